@@ -1,0 +1,1 @@
+//! Étendue's geometry crate.

@@ -1,0 +1,1 @@
+//! Étendue's image crate.
