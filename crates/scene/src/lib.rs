@@ -1,1 +1,8 @@
-//! Étendue's scene crate.
+//! What is there: materials, textures, lights, cameras and film. An untyped [`Document`] with its assets becomes an
+//! immutable [`Scene`]. Knows neither methods of light transport nor files.
+
+pub mod diagnostics;
+pub mod document;
+
+pub use diagnostics::{Diagnostic, Diagnostics, Severity, Sources, Span};
+pub use document::Document;
