@@ -3,6 +3,7 @@
 
 pub mod diagnostics;
 pub mod document;
+pub mod texture;
 
 pub use diagnostics::{Diagnostic, Diagnostics, Severity, Sources, Span};
 pub use document::Document;

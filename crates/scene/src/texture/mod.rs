@@ -1,0 +1,5 @@
+//! Textures: numbers and spectra that vary over surfaces.
+
+mod handle;
+
+pub use handle::{FloatTexture, FloatTextureId, SpectrumTexture, SpectrumTextureId, TextureContext};
