@@ -1,0 +1,35 @@
+//! Contents of the files that a document names: meshes, images and measured spectra.
+//!
+//! The scene is built from a [`Document`](crate::Document) and its `Assets`, so that building opens no file.
+//! Everything is keyed by the file name exactly as the parameter wrote it.
+
+use std::collections::HashMap;
+
+use etendue_math::{Normal3, Point2, Point3};
+
+/// A mesh read from a file, in object space.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LoadedMesh {
+    /// Vertices of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// Vertices of each bilinear patch in pbrt's order `p00 p10 p01 p11`: a quadrilateral `a b c d` of the file is
+    /// `[a, b, d, c]` here.
+    pub quads: Vec<[u32; 4]>,
+    /// Vertex positions.
+    pub positions: Vec<Point3>,
+    /// Vertex normals, not necessarily of unit length; empty if the file has none.
+    pub normals: Vec<Normal3>,
+    /// Vertex texture coordinates; empty if the file has none.
+    pub uvs: Vec<Point2>,
+    /// Face index of each triangle, then of each quad; empty if the file has none.
+    pub face_indices: Vec<i32>,
+}
+
+/// Everything that was loaded for a document.
+#[derive(Clone, Debug, Default)]
+pub struct Assets {
+    /// Meshes by file name.
+    pub meshes: HashMap<String, LoadedMesh>,
+    /// Measured spectra by file name: wavelengths in nanometres, ascending, with their values.
+    pub spectra: HashMap<String, Vec<[f32; 2]>>,
+}
