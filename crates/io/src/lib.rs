@@ -1,1 +1,3 @@
 //! Étendue's io crate.
+
+pub mod images;
