@@ -4,6 +4,7 @@
 pub mod assets;
 pub mod diagnostics;
 pub mod document;
+pub mod light;
 pub mod texture;
 
 pub use assets::{Assets, LoadedMesh};
