@@ -1,1 +1,22 @@
-//! Étendue's geometry crate.
+//! Shapes, ray intersection and bounding volume hierarchies. Knows nothing of materials or light.
+//!
+//! A [`GeometryBuilder`] takes [`Shape`]s, objects made of shapes and instances of objects; [`Geometry`] is the
+//! immutable result that answers [`intersect`](Geometry::intersect), [`occluded`](Geometry::occluded) and
+//! [`surface_point`](Geometry::surface_point), and samples points of shapes for light sources. Hit parameters t
+//! lie in the open interval (0, `t_max`): callers leave a surface with [`etendue_math::offset_ray_origin`] and the
+//! error bounds of [`SurfacePoint`], so no global epsilon exists (SPEC GEO-1, GEO-2).
+
+mod hit;
+mod mesh;
+mod shape;
+
+mod builder;
+mod geometry;
+mod subdivision;
+
+pub use builder::GeometryBuilder;
+pub use geometry::{Geometry, GeometryCounts};
+pub use hit::{GeometryId, Hit, NO_INSTANCE, ObjectId, Reference, ShapeSample, SurfacePoint};
+pub use mesh::{BilinearMesh, MeshError, TriangleMesh};
+pub use shape::Shape;
+pub use subdivision::loop_subdivide;
