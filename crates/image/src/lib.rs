@@ -5,9 +5,22 @@
 //! its file had. Both are row-major with the top row first. No file is opened here; `io` reads and writes.
 
 mod buffer;
+pub mod compare;
 mod encoding;
+mod resample;
 mod texels;
+pub mod tonemap;
 
 pub use buffer::{Channel, Image};
 pub use encoding::{DecodeTable, Encoding, srgb_decode, srgb_encode};
+pub use resample::box_downsample;
 pub use texels::{Chromaticities, TexelData, Texels};
+
+#[cfg(test)]
+mod tests;
+
+/// Luminance of linear RGB with the weights of Rec. ITU-R BT.709, in the unit of the channels.
+#[inline]
+pub fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
