@@ -2,8 +2,10 @@
 //! immutable [`Scene`]. Knows neither methods of light transport nor files.
 
 pub mod assets;
+pub mod camera;
 pub mod diagnostics;
 pub mod document;
+pub mod filter;
 pub mod light;
 pub mod texture;
 

@@ -1,0 +1,150 @@
+//! Cameras (SPEC CAM-1 to CAM-3): from a place on the film, on the lens and in time to a ray, and back.
+//!
+//! Camera space has +z ahead and +y up. Raster coordinates count pixels, x to the right and y down, with pixel centres
+//! at +0.5. A camera's importance `we` is normalised to an integral of 1 over the whole film: a path from the lights
+//! that reaches the camera at raster position p adds `n_pixels * f |cos| we / pdf_w` to the mean of the pixel there.
+
+mod build;
+mod differentials;
+mod importance;
+mod lens;
+mod orthographic;
+mod perspective;
+mod screen;
+mod spherical;
+#[cfg(test)]
+mod tests;
+
+use etendue_math::{AnimatedTransform, Bounds2, Point2, Ray, Transform, lerp};
+
+use differentials::MinimumDifferentials;
+
+pub use build::{CAMERA_NAMES, parameter_specs};
+pub use importance::{CameraWiSample, FilmImportance};
+pub use lens::{Lens, circle_of_confusion, field_of_view};
+pub use orthographic::Orthographic;
+pub use perspective::Perspective;
+pub use screen::{Screen, ScreenWindow};
+pub use spherical::{Spherical, SphericalMapping};
+
+/// How rays leave the camera, in camera space.
+///
+/// To add one: a file with a plain struct that turns raster and lens positions into rays, a variant here, its arm in
+/// [`Projection::ray`], in `importance.rs` and in `build.rs`, its parameters there, a line in the tests.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Pinhole or thin lens.
+    Perspective(Perspective),
+    /// Parallel rays.
+    Orthographic(Orthographic),
+    /// All directions from a point.
+    Spherical(Spherical),
+}
+
+impl Projection {
+    /// The ray in camera space, of unit direction, at time 0.
+    #[inline]
+    fn ray(&self, p_film: Point2, u_lens: Point2) -> Ray {
+        match self {
+            Self::Perspective(camera) => camera.ray(p_film, u_lens),
+            Self::Orthographic(camera) => camera.ray(p_film, u_lens),
+            Self::Spherical(camera) => camera.ray(p_film),
+        }
+    }
+}
+
+/// A ray from the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraRay {
+    /// In the world, of unit direction, with its time.
+    pub ray: Ray,
+    /// Factor of the radiance along it.
+    pub weight: f32,
+}
+
+/// When the film is exposed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shutter {
+    /// Opens, in seconds.
+    pub open: f32,
+    /// Closes, in seconds.
+    pub close: f32,
+}
+
+impl Default for Shutter {
+    fn default() -> Self {
+        Self { open: 0.0, close: 1.0 }
+    }
+}
+
+/// A camera in the world.
+#[derive(Clone, Debug)]
+pub struct Camera {
+    projection: Projection,
+    world_from_camera: AnimatedTransform,
+    shutter: Shutter,
+    /// The part of the film that is rendered, in pixels: elsewhere the camera takes no light.
+    crop: Bounds2,
+    differentials: MinimumDifferentials,
+}
+
+impl Camera {
+    /// A camera. `resolution` is that of the whole film in pixels; `crop` is the rendered part of it.
+    #[must_use]
+    pub fn new(
+        projection: Projection,
+        world_from_camera: AnimatedTransform,
+        shutter: Shutter,
+        resolution: [u32; 2],
+        crop: Bounds2,
+    ) -> Self {
+        let differentials = MinimumDifferentials::new(&projection, resolution);
+        Self { projection, world_from_camera, shutter, crop, differentials }
+    }
+
+    /// The projection.
+    #[must_use]
+    pub const fn projection(&self) -> &Projection {
+        &self.projection
+    }
+
+    /// Placement in the world over time.
+    #[must_use]
+    pub const fn world_from_camera(&self) -> &AnimatedTransform {
+        &self.world_from_camera
+    }
+
+    /// When the film is exposed.
+    #[must_use]
+    pub const fn shutter(&self) -> Shutter {
+        self.shutter
+    }
+
+    /// The time in seconds that a random number in [0, 1) stands for.
+    #[inline]
+    #[must_use]
+    pub fn sample_time(&self, u: f32) -> f32 {
+        lerp(u, self.shutter.open, self.shutter.close)
+    }
+
+    /// Placement at a time in seconds.
+    #[inline]
+    fn transform_at(&self, time: f32) -> Transform {
+        if self.world_from_camera.is_animated() {
+            self.world_from_camera.at(time)
+        } else {
+            self.world_from_camera.start
+        }
+    }
+
+    /// The ray through raster position `p_film` (pixels) for a random point of the lens and a random time.
+    #[inline]
+    #[must_use]
+    pub fn sample_ray(&self, p_film: Point2, u_lens: Point2, u_time: f32) -> Option<CameraRay> {
+        let time = self.sample_time(u_time);
+        let mut ray = self.transform_at(time).ray(&self.projection.ray(p_film, u_lens));
+        ray.direction = ray.direction.try_normalized()?;
+        ray.time = time;
+        Some(CameraRay { ray, weight: 1.0 })
+    }
+}
