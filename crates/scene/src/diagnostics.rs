@@ -69,6 +69,12 @@ impl Sources {
         FileId(self.files.len() as u32 - 1)
     }
 
+    /// Replaces the text of a file: a reader that needs an id before it has finished with the text adds the file
+    /// empty.
+    pub fn fill(&mut self, id: FileId, text: impl Into<String>) {
+        self.files[id.0 as usize].text = text.into();
+    }
+
     /// The file of that id.
     #[must_use]
     pub fn file(&self, id: FileId) -> &SourceFile {
