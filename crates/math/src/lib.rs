@@ -12,9 +12,21 @@ mod numeric;
 mod ray;
 mod transform;
 
+mod alias;
+pub mod low_discrepancy;
+mod piecewise;
+mod rng;
+mod sampler;
+pub mod statistics;
+pub mod warp;
+
+pub use alias::AliasTable;
 pub use bounds::{Bounds2, Bounds3};
 pub use frame::Frame;
 pub use numeric::{clamp_cosine, lerp, next_float_down, next_float_up, safe_acos, safe_sqrt, sqr};
+pub use piecewise::{PiecewiseConstant1, PiecewiseConstant2, WindowedPiecewiseConstant2};
 pub use ray::{Ray, offset_ray_origin};
+pub use rng::{ONE_MINUS_EPSILON, Rng, hash64, mix64, unit_f32, unit_f64};
+pub use sampler::{Sampler, SamplerKind, SamplerSettings};
 pub use transform::{AnimatedTransform, Transform};
 pub use vector::{Normal3, Point2, Point3, Vector2, Vector3};
