@@ -64,7 +64,7 @@ pub fn srgb_decode(stored: f32) -> f32 {
     if stored <= 0.04045 {
         return stored / 12.92;
     }
-    (f64::from(stored + 0.055) / 1.055).powf(2.4) as f32
+    ((f64::from(stored) + 0.055) / 1.055).powf(2.4) as f32
 }
 
 /// sRGB value of linear light; values below zero stay on the linear piece.

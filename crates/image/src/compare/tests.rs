@@ -1,1 +1,213 @@
+use super::{CompareError, DifferenceKind, Pair, Settings, compare, flip};
+use crate::{Image, srgb_decode};
 
+fn gradient() -> Image {
+    Image::from_fn(24, 16, |x, y| [x as f32 / 24.0, y as f32 / 16.0, ((x * y) % 7) as f32 / 7.0])
+}
+
+fn constant(color: [f32; 3]) -> Image {
+    Image::from_fn(8, 8, |_, _| color)
+}
+
+fn mean_flip(a: &Image, b: &Image) -> f64 {
+    compare(a, b, &Settings::default()).expect("comparable images").flip
+}
+
+/// An image does not differ from itself.
+#[test]
+fn identity_is_zero() {
+    let image = gradient();
+    let same = compare(&image, &image, &Settings::default()).expect("same size");
+    for error in [same.mse, same.rmse, same.relmse, same.mape, same.smape, same.flip] {
+        assert_eq!(error, 0.0);
+    }
+    assert_eq!(same.psnr_db, f64::INFINITY);
+    assert_eq!((same.mean_ratio, same.channel_ratio), (1.0, [1.0; 3]));
+    assert_eq!((same.n_pixels, same.n_masked), (384, 0));
+}
+
+/// Two flat fields 0.5 and 0.25: every metric can be written down.
+#[test]
+fn known_values() {
+    let result = compare(&constant([0.5; 3]), &constant([0.25; 3]), &Settings::default()).expect("same size");
+    let expected = [
+        (result.mse, 0.0625),
+        (result.rmse, 0.25),
+        (result.relmse, 0.0625 / 0.0725),
+        (result.mape, 0.25 / 0.26),
+        (result.smape, 0.25 / 0.76),
+        (result.psnr_db, 10.0 * 16f64.log10()),
+        (result.mean_ratio, 2.0),
+        (result.mean_test[1], 0.5),
+        (result.mean_reference[2], 0.25),
+    ];
+    for (value, expected) in expected {
+        assert!((value - expected).abs() < 1e-12, "{value} instead of {expected}");
+    }
+}
+
+/// A loss in one channel shows in that channel's ratio alone.
+#[test]
+fn ratios_by_channel() {
+    let result = compare(&constant([1.0, 0.5, 2.0]), &constant([1.0, 1.0, 2.0]), &Settings::default())
+        .expect("same size");
+    assert_eq!(result.channel_ratio, [1.0, 0.5, 1.0]);
+    assert!((result.mean_ratio - 3.5 / 4.0).abs() < 1e-12);
+}
+
+/// A pixel that is not finite in one image is counted and left out of every mean.
+#[test]
+fn non_finite_pixels_are_masked() {
+    let reference = gradient();
+    let mut test = gradient();
+    test.channels[0].values[5] = f32::NAN;
+    test.channels[1].values[5] = f32::INFINITY;
+    test.channels[2].values[300] = f32::NEG_INFINITY;
+    let result = compare(&test, &reference, &Settings::default()).expect("same size");
+    assert_eq!((result.n_masked, result.n_non_finite_test, result.n_non_finite_reference), (2, 2, 0));
+    assert_eq!((result.mse, result.flip, result.mean_ratio), (0.0, 0.0, 1.0));
+    let nothing =
+        compare(&constant([f32::NAN; 3]), &constant([1.0; 3]), &Settings::default()).expect("same size");
+    assert!(nothing.mse.is_nan() && nothing.flip.is_nan());
+}
+
+/// Clipping both images hides differences beyond the bounds.
+#[test]
+fn clamping() {
+    let settings = Settings { clamp: Some([0.0, 1.0]), ..Settings::default() };
+    let result = compare(&constant([7.0; 3]), &constant([1.0; 3]), &settings).expect("same size");
+    assert_eq!((result.mse, result.mean_ratio), (0.0, 1.0));
+}
+
+/// Images that cannot be compared say why.
+#[test]
+fn incomparable() {
+    let depth = {
+        let mut image = Image::new(8, 8);
+        image.set_channel("Z", vec![1.0; 64]);
+        image
+    };
+    let settings = Settings::default();
+    let sizes = compare(&gradient(), &constant([0.0; 3]), &settings).expect_err("24 x 16 against 8 x 8");
+    assert_eq!(sizes, CompareError::SizesDiffer { test: [24, 16], reference: [8, 8] });
+    assert!(sizes.to_string().contains("24 x 16 against 8 x 8"));
+    assert_eq!(compare(&depth, &constant([0.0; 3]), &settings), Err(CompareError::NoColor));
+    let empty = Image::rgb(0, 3, Vec::new());
+    assert_eq!(compare(&empty, &empty, &settings), Err(CompareError::Empty));
+}
+
+/// Green against blue is the largest distance by construction, so its error is 1.
+#[test]
+fn flip_of_green_and_blue_is_one() {
+    let flip = mean_flip(&constant([0.0, 1.0, 0.0]), &constant([0.0, 0.0, 1.0]));
+    assert!((flip - 1.0).abs() < 1e-4, "{flip}");
+}
+
+/// Black against white: lightness differs by 100, chroma not at all, and there are no features.
+#[test]
+fn flip_of_black_and_white() {
+    let flip = mean_flip(&constant([0.0; 3]), &constant([1.0; 3]));
+    // HyAB of green and blue with the Hunt effect, from their CIELAB coordinates (D65).
+    let (green, blue) = ([87.735, -86.184, 83.18], [32.303, 79.197, -107.855]);
+    let chroma = |lab: [f64; 3], i: usize| 0.01 * lab[0] * lab[i];
+    let (da, db) = (chroma(green, 1) - chroma(blue, 1), chroma(green, 2) - chroma(blue, 2));
+    let largest = (green[0] - blue[0] + da.hypot(db)).powf(0.7);
+    let expected = 0.95 + 0.05 * (100f64.powf(0.7) - 0.4 * largest) / (0.6 * largest);
+    assert!((flip - expected).abs() < 1e-4, "{flip} instead of {expected}");
+    assert!(flip > 0.96);
+}
+
+/// Flipping A to B shows what flipping B to A shows.
+#[test]
+fn flip_is_symmetric_and_bounded() {
+    let a = gradient();
+    let b = Image::from_fn(24, 16, |x, y| [y as f32 / 16.0, if x % 5 == 0 { 1.0 } else { 0.1 }, 0.3]);
+    assert_eq!(mean_flip(&a, &b), mean_flip(&b, &a));
+    let map = Pair::new(&a, &b, None).expect("same size").flip_map(flip::PIXELS_PER_DEGREE, 0.0);
+    assert!(map.iter().all(|error| (0.0..=1.0).contains(error)));
+}
+
+/// A stronger change is seen more.
+#[test]
+fn flip_grows_with_the_change() {
+    let brighter = |step: f32| {
+        Image::from_fn(24, 16, |x, y| [x as f32 / 24.0 * 0.5 + step, y as f32 / 32.0 + step, 0.2 + step])
+    };
+    let errors: Vec<f64> =
+        [0.01, 0.05, 0.1, 0.3].iter().map(|&step| mean_flip(&brighter(step), &brighter(0.0))).collect();
+    assert!(errors.is_sorted() && errors[0] > 0.0, "{errors:?}");
+}
+
+/// The eye blurs a fine checkerboard: seen from afar it differs less from its average than seen from near.
+#[test]
+fn flip_filters_fine_patterns() {
+    let checker = Image::from_fn(32, 32, |x, y| [((x + y) % 2) as f32; 3]);
+    let average = Image::from_fn(32, 32, |_, _| [0.5; 3]);
+    let at = |pixels_per_degree| {
+        let settings = Settings { pixels_per_degree, ..Settings::default() };
+        compare(&checker, &average, &settings).expect("same size").flip
+    };
+    assert!(at(120.0) < 0.5 * at(10.0), "{} against {}", at(120.0), at(10.0));
+}
+
+/// Bytes of a picture with gradients, a checkerboard and hashed grain.
+fn pattern(x: usize, y: usize) -> [u8; 3] {
+    let hash = (x as u32).wrapping_mul(2_654_435_761) ^ (y as u32).wrapping_mul(2_246_822_519);
+    let hash = (hash ^ (hash >> 15)).wrapping_mul(0x85eb_ca6b);
+    let grain = ((hash ^ (hash >> 13)) & 63) as u8;
+    [(x * 4) as u8, if (x / 8 + y / 8).is_multiple_of(2) { 200 } else { grain }, (y * 5) as u8]
+}
+
+/// The same with two channels swapped in a box, red halved at the right, and green a little raised elsewhere.
+fn changed_pattern(x: usize, y: usize) -> [u8; 3] {
+    let [r, g, b] = pattern(x, y);
+    if (20..40).contains(&x) && (10..30).contains(&y) {
+        return [g, r, b];
+    }
+    if x > 44 { [r / 2, g, b] } else { [r, g.saturating_add(6), b] }
+}
+
+/// The authors' C++ implementation (version 1.2) on the same two pictures, 67.02064 pixels per degree.
+#[test]
+fn flip_agrees_with_the_authors() {
+    let picture = |pattern: fn(usize, usize) -> [u8; 3]| {
+        Image::from_fn(64, 48, |x, y| pattern(x, y).map(|byte| srgb_decode(f32::from(byte) / 255.0)))
+    };
+    let pair = Pair::new(&picture(changed_pattern), &picture(pattern), None).expect("same size");
+    let map = pair.flip_map(flip::PIXELS_PER_DEGREE, 0.0);
+    assert!((pair.mean_of_map(&map) - 0.434_109_134).abs() < 1e-6);
+    let pixels = [
+        ([0, 0], 0.199_357_67),
+        ([30, 20], 0.715_311_4),
+        ([19, 15], 0.330_463_23),
+        ([50, 40], 0.641_897_56),
+        ([63, 47], 0.799_855_95),
+        ([5, 33], 0.199_022_49),
+    ];
+    for ([x, y], expected) in pixels {
+        assert!(
+            (map[y * 64 + x] - expected).abs() < 5e-6,
+            "{x}, {y}: {} instead of {expected}",
+            map[y * 64 + x]
+        );
+    }
+}
+
+/// A difference map of a darker pixel is negative there, shown blue, and zero elsewhere.
+#[test]
+fn difference_maps() {
+    let reference = constant([0.5; 3]);
+    let mut test = reference.clone();
+    test.channels.iter_mut().for_each(|channel| channel.values[9] = 0.25);
+    let pair = Pair::new(&test, &reference, None).expect("same size");
+    let signed = pair.difference(DifferenceKind::Signed);
+    assert!((signed.values[9] + 0.25).abs() < 1e-6 && signed.values[8] == 0.0);
+    let shown = signed.to_false_colors(0.25).rgb_pixels().expect("colour");
+    assert!(shown[9][2] > shown[9][0] && shown[8][0] > 0.9);
+    let absolute = pair.difference(DifferenceKind::Absolute);
+    assert!((absolute.max() - 0.25).abs() < 1e-6);
+    let relative = pair.difference(DifferenceKind::RelativeSquared).to_image();
+    assert!((relative.channels[0].values[9] - 0.0625 / 0.26).abs() < 1e-6);
+    let flip = pair.difference(DifferenceKind::Flip { pixels_per_degree: flip::PIXELS_PER_DEGREE });
+    assert!(flip.values[9] > flip.values[63]);
+}
