@@ -2,12 +2,12 @@
 //! immutable [`Scene`]. Knows neither methods of light transport nor files.
 
 pub mod assets;
-pub mod bsdf;
 pub mod camera;
 pub mod diagnostics;
 pub mod document;
 pub mod filter;
 pub mod light;
+pub mod parameters;
 pub mod texture;
 
 pub use assets::{Assets, LoadedMesh};

@@ -81,7 +81,7 @@ impl<'a> BuildContext<'a> {
             return Some(*spectrum);
         }
         let samples = if let Some(samples) = etendue_spectrum::named_spectrum(name) {
-            samples
+            samples.samples
         } else if let Some(samples) = self.assets.spectra.get(name) {
             samples.clone()
         } else if let Some(stand_in) = etendue_spectrum::known_but_missing(name) {
@@ -89,10 +89,11 @@ impl<'a> BuildContext<'a> {
                 span,
                 format!("the spectrum \"{name}\" is not built in yet; \"{stand_in}\" stands in for it"),
             );
-            etendue_spectrum::named_spectrum(stand_in)?
+            etendue_spectrum::named_spectrum(stand_in)?.samples
         } else {
             let error = self.diagnostics.error(span, format!("unknown spectrum \"{name}\""));
-            if let Some(near) = nearest_name(name, etendue_spectrum::spectrum_names()) {
+            let known = etendue_spectrum::named_spectrum_names();
+            if let Some(near) = nearest_name(name, known.iter().map(String::as_str)) {
                 error.with_help(format!("did you mean \"{near}\"?"));
             }
             return None;
@@ -109,8 +110,10 @@ impl<'a> BuildContext<'a> {
                 let rgb = *values.first()?;
                 let space = ColorSpace::get(parameter.color_space);
                 if rgb.iter().any(|c| *c < 0.0 || !c.is_finite()) {
-                    self.diagnostics
-                        .error(parameter.span, format!("\"{}\" has a negative or non-finite colour", parameter.name));
+                    self.diagnostics.error(
+                        parameter.span,
+                        format!("\"{}\" has a negative or non-finite colour", parameter.name),
+                    );
                     return None;
                 }
                 Some(match role {
@@ -118,7 +121,10 @@ impl<'a> BuildContext<'a> {
                         if rgb.iter().any(|c| *c > 1.0) {
                             self.diagnostics.warning(
                                 parameter.span,
-                                format!("\"{}\" is a reflectance above 1; it is clamped to 1", parameter.name),
+                                format!(
+                                    "\"{}\" is a reflectance above 1; it is clamped to 1",
+                                    parameter.name
+                                ),
                             );
                         }
                         space.rgb_albedo(rgb)
@@ -127,7 +133,7 @@ impl<'a> BuildContext<'a> {
                     SpectrumRole::Illuminant => space.rgb_illuminant(&mut self.spectra, rgb),
                 })
             }
-            Value::Blackbody(kelvin) => Some(Spectrum::blackbody(*kelvin.first()?)),
+            Value::Blackbody(kelvin) => Some(Spectrum::Blackbody { kelvin: *kelvin.first()?, scale: 1.0 }),
             Value::SpectrumNames(names) => {
                 let name = names.first()?.clone();
                 self.named_spectrum(&name, parameter.span)
@@ -227,6 +233,11 @@ impl<'a, 'c> Parameters<'a, 'c> {
     /// Accepts a parameter without using it.
     pub fn ignore(&mut self, name: &'static str) {
         let _ = self.find(name);
+    }
+
+    /// Accepts all parameters: after a type name that is not known, their names say nothing.
+    pub fn accept_all(&mut self) {
+        self.used.fill(true);
     }
 
     fn mismatch(&mut self, parameter: &Parameter, wanted: &str) {
@@ -371,7 +382,11 @@ impl<'a, 'c> Parameters<'a, 'c> {
     }
 
     /// A spectrum that may be textured, or `None` if not given.
-    pub fn spectrum_texture_opt(&mut self, name: &'static str, role: SpectrumRole) -> Option<SpectrumTexture> {
+    pub fn spectrum_texture_opt(
+        &mut self,
+        name: &'static str,
+        role: SpectrumRole,
+    ) -> Option<SpectrumTexture> {
         let parameter = self.find(name)?;
         let Value::Texture(texture) = &parameter.value else {
             return self.context.spectrum_of(parameter, role).map(SpectrumTexture::Constant);
@@ -384,7 +399,12 @@ impl<'a, 'c> Parameters<'a, 'c> {
     }
 
     /// A spectrum that may be textured, with a default.
-    pub fn spectrum_texture(&mut self, name: &'static str, default: Spectrum, role: SpectrumRole) -> SpectrumTexture {
+    pub fn spectrum_texture(
+        &mut self,
+        name: &'static str,
+        default: Spectrum,
+        role: SpectrumRole,
+    ) -> SpectrumTexture {
         self.spectrum_texture_opt(name, role).unwrap_or(SpectrumTexture::Constant(default))
     }
 
@@ -396,10 +416,10 @@ impl<'a, 'c> Parameters<'a, 'c> {
         } else {
             nearest_name(texture, spectra.keys().map(|(name, _)| name.as_str())).map(str::to_owned)
         };
-        let error = self
-            .context
-            .diagnostics
-            .error(parameter.span, format!("no {kind} texture named \"{texture}\" is defined before its use"));
+        let error = self.context.diagnostics.error(
+            parameter.span,
+            format!("no {kind} texture named \"{texture}\" is defined before its use"),
+        );
         if let Some(near) = near {
             error.with_help(format!("did you mean \"{near}\"?"));
         }
@@ -413,7 +433,10 @@ impl<'a, 'c> Parameters<'a, 'c> {
             }
             let warning = self.context.diagnostics.warning(
                 parameter.span,
-                format!("\"{}\" does not know the parameter \"{}\"; it is ignored", self.entity.type_name, parameter.name),
+                format!(
+                    "\"{}\" does not know the parameter \"{}\"; it is ignored",
+                    self.entity.type_name, parameter.name
+                ),
             );
             if let Some(near) = nearest_name(&parameter.name, self.asked.iter().copied()) {
                 warning.with_help(format!("did you mean \"{near}\"?"));
