@@ -81,9 +81,13 @@ impl FilterKind {
 /// The piecewise cubic of Mitchell and Netravali on [0, 2] (their equation 8).
 fn mitchell(x: f64, b: f64, c: f64) -> f64 {
     if x <= 1.0 {
-        ((12.0 - 9.0 * b - 6.0 * c) * x.powi(3) + (-18.0 + 12.0 * b + 6.0 * c) * x * x + (6.0 - 2.0 * b)) / 6.0
+        ((12.0 - 9.0 * b - 6.0 * c) * x.powi(3) + (-18.0 + 12.0 * b + 6.0 * c) * x * x + (6.0 - 2.0 * b))
+            / 6.0
     } else if x <= 2.0 {
-        ((-b - 6.0 * c) * x.powi(3) + (6.0 * b + 30.0 * c) * x * x + (-12.0 * b - 48.0 * c) * x + (8.0 * b + 24.0 * c))
+        ((-b - 6.0 * c) * x.powi(3)
+            + (6.0 * b + 30.0 * c) * x * x
+            + (-12.0 * b - 48.0 * c) * x
+            + (8.0 * b + 24.0 * c))
             / 6.0
     } else {
         0.0
@@ -155,7 +159,8 @@ impl Default for Filter {
     /// The Gaussian of radius 1.5 and sigma 0.5, in pixels.
     fn default() -> Self {
         let kind = FilterKind::Gaussian { sigma: 0.5 };
-        Self::new(kind, Vector2::splat(kind.default_radius())).expect("the default filter has a positive integral")
+        Self::new(kind, Vector2::splat(kind.default_radius()))
+            .expect("the default filter has a positive integral")
     }
 }
 
@@ -257,8 +262,10 @@ impl Filter {
             }
         };
         let default_radius = kind.default_radius();
-        let radius =
-            Vector2::new(parameters.float("xradius", default_radius), parameters.float("yradius", default_radius));
+        let radius = Vector2::new(
+            parameters.float("xradius", default_radius),
+            parameters.float("yradius", default_radius),
+        );
         Self::new(kind, radius).unwrap_or_else(|| {
             let span = parameters.span();
             let message = format!("the \"{name}\" filter needs positive radii and a positive integral");
@@ -274,7 +281,13 @@ fn sample_triangle(u: f32) -> f32 {
 }
 
 const fn radius(name: &'static str, default: &'static str) -> ParameterSpec {
-    ParameterSpec { name, kind: "float", default, unit: "pixel", doc: "half the size of the support along the axis" }
+    ParameterSpec {
+        name,
+        kind: "float",
+        default,
+        unit: "pixel",
+        doc: "half the size of the support along the axis",
+    }
 }
 static BOX_PARAMETERS: [ParameterSpec; 2] = [radius("xradius", "0.5"), radius("yradius", "0.5")];
 static TRIANGLE_PARAMETERS: [ParameterSpec; 2] = [radius("xradius", "2"), radius("yradius", "2")];
@@ -292,5 +305,11 @@ static MITCHELL_PARAMETERS: [ParameterSpec; 4] = [
 static SINC_PARAMETERS: [ParameterSpec; 3] = [
     radius("xradius", "4"),
     radius("yradius", "4"),
-    ParameterSpec { name: "tau", kind: "float", default: "3", unit: "", doc: "cycles that the window passes" },
+    ParameterSpec {
+        name: "tau",
+        kind: "float",
+        default: "3",
+        unit: "",
+        doc: "cycles that the window passes",
+    },
 ];

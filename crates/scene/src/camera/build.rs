@@ -5,16 +5,27 @@ use etendue_math::{AnimatedTransform, Bounds2};
 use crate::parameters::{ParameterSpec, Parameters};
 
 use super::{
-    Camera, Lens, Orthographic, Perspective, Projection, Screen, ScreenWindow, Shutter, Spherical, SphericalMapping,
+    Camera, Lens, Orthographic, Perspective, Projection, Screen, ScreenWindow, Shutter, Spherical,
+    SphericalMapping,
 };
 
 /// Names of cameras in scene files.
 pub const CAMERA_NAMES: [&str; 3] = ["perspective", "orthographic", "spherical"];
 
-const SHUTTER_OPEN: ParameterSpec =
-    ParameterSpec { name: "shutteropen", kind: "float", default: "0", unit: "s", doc: "when the film's exposure begins" };
-const SHUTTER_CLOSE: ParameterSpec =
-    ParameterSpec { name: "shutterclose", kind: "float", default: "1", unit: "s", doc: "when the film's exposure ends" };
+const SHUTTER_OPEN: ParameterSpec = ParameterSpec {
+    name: "shutteropen",
+    kind: "float",
+    default: "0",
+    unit: "s",
+    doc: "when the film's exposure begins",
+};
+const SHUTTER_CLOSE: ParameterSpec = ParameterSpec {
+    name: "shutterclose",
+    kind: "float",
+    default: "1",
+    unit: "s",
+    doc: "when the film's exposure ends",
+};
 const ASPECT: ParameterSpec = ParameterSpec {
     name: "frameaspectratio",
     kind: "float",
@@ -132,13 +143,17 @@ fn read_shutter(parameters: &mut Parameters<'_, '_>) -> Shutter {
 }
 
 fn read_lens(parameters: &mut Parameters<'_, '_>) -> Lens {
-    let lens =
-        Lens { radius: parameters.float("lensradius", 0.0), focal_distance: parameters.float("focaldistance", 1e6) };
+    let lens = Lens {
+        radius: parameters.float("lensradius", 0.0),
+        focal_distance: parameters.float("focaldistance", 1e6),
+    };
     if lens.radius >= 0.0 && lens.focal_distance > 0.0 {
         return lens;
     }
     let span = parameters.span_of("lensradius");
-    parameters.diagnostics().error(span, "\"lensradius\" must not be negative and \"focaldistance\" must be positive");
+    parameters
+        .diagnostics()
+        .error(span, "\"lensradius\" must not be negative and \"focaldistance\" must be positive");
     Lens::PINHOLE
 }
 

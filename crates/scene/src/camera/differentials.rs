@@ -27,7 +27,8 @@ impl MinimumDifferentials {
         const N_POSITIONS: u32 = 512;
         const STEP: f32 = 0.05;
         let centre = Point2::new(0.5, 0.5);
-        let mut result = Self { origin: [Vector3::splat(f32::MAX); 2], direction: [Vector3::splat(f32::MAX); 2] };
+        let mut result =
+            Self { origin: [Vector3::splat(f32::MAX); 2], direction: [Vector3::splat(f32::MAX); 2] };
         let keep_shorter = |best: &mut Vector3, v: Vector3| {
             if v.is_finite() && v.length() < best.length() {
                 *best = v;
@@ -71,8 +72,11 @@ impl Camera {
         let camera_from_world = world_from_camera.inverse();
         let p_camera = camera_from_world.point(p).as_vector();
         let is_parallel = matches!(self.projection, Projection::Orthographic(_));
-        let (axis, distance) =
-            if is_parallel { (Vector3::new(0.0, 0.0, 1.0), p_camera.z) } else { (p_camera, p_camera.length()) };
+        let (axis, distance) = if is_parallel {
+            (Vector3::new(0.0, 0.0, 1.0), p_camera.z)
+        } else {
+            (p_camera, p_camera.length())
+        };
         let Some(axis) = axis.try_normalized() else {
             return (Vector3::default(), Vector3::default());
         };

@@ -65,7 +65,8 @@ impl Perspective {
         let to_lens = p_lens - p;
         let distance_squared = to_lens.length_squared();
         let cos_theta = p.z / distance_squared.sqrt();
-        (cos_theta > 0.0).then(|| LensPoint { p_lens, pdf_w: distance_squared / (cos_theta * self.lens.area()) })
+        (cos_theta > 0.0)
+            .then(|| LensPoint { p_lens, pdf_w: distance_squared / (cos_theta * self.lens.area()) })
     }
 }
 
@@ -144,7 +145,10 @@ impl Camera {
             Projection::Spherical(camera) => {
                 let to_p = p_camera.as_vector();
                 let ray = Ray::new(Point3::ORIGIN, to_p.try_normalized()?);
-                (LensPoint { p_lens: Point3::ORIGIN, pdf_w: to_p.length_squared() }, camera.film_importance(&ray))
+                (
+                    LensPoint { p_lens: Point3::ORIGIN, pdf_w: to_p.length_squared() },
+                    camera.film_importance(&ray),
+                )
             }
         };
         if !self.in_crop(film.p_film) {
@@ -171,7 +175,9 @@ impl Camera {
         let p = self.transform_at(time).inverse().point(p);
         let p_film = match &self.projection {
             Projection::Perspective(camera) => camera.raster_from_direction(p.as_vector())?,
-            Projection::Orthographic(camera) if p.z > 0.0 => camera.screen.raster_from_screen(Point2::new(p.x, p.y)),
+            Projection::Orthographic(camera) if p.z > 0.0 => {
+                camera.screen.raster_from_screen(Point2::new(p.x, p.y))
+            }
             Projection::Orthographic(_) => return None,
             Projection::Spherical(camera) => camera.raster_from_direction(p.as_vector().try_normalized()?),
         };

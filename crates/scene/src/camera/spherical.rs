@@ -37,7 +37,9 @@ impl Spherical {
     pub fn direction(&self, p_film: Point2) -> Vector3 {
         let uv = Point2::new(p_film.x / self.resolution[0], p_film.y / self.resolution[1]);
         let d = match self.mapping {
-            SphericalMapping::EqualArea => warp::equal_area_square_to_sphere(warp::wrap_equal_area_square(uv)),
+            SphericalMapping::EqualArea => {
+                warp::equal_area_square_to_sphere(warp::wrap_equal_area_square(uv))
+            }
             SphericalMapping::Equirectangular => {
                 let (sin_theta, cos_theta) = (std::f32::consts::PI * uv.y).sin_cos();
                 let (sin_phi, cos_phi) = (std::f32::consts::TAU * uv.x).sin_cos();

@@ -1,0 +1,42 @@
+//! Camera and pixel filter.
+
+use etendue_math::{AnimatedTransform, Bounds2, Point2, Transform};
+
+use crate::camera::Camera;
+use crate::document::Entity;
+use crate::film::FilmSettings;
+use crate::filter::Filter;
+use crate::parameters::Parameters;
+
+use super::Builder;
+
+impl Builder<'_, '_> {
+    pub(super) fn build_camera(&mut self, film: &FilmSettings) -> Camera {
+        let fallback = Entity::new("perspective");
+        let (mut entity, world_from_camera) = match &self.document.camera {
+            Some(camera) => (camera.entity.clone(), camera.world_from_camera),
+            None => (fallback, AnimatedTransform::constant(Transform::IDENTITY)),
+        };
+        if entity.type_name == "realistic" {
+            let message = "the camera \"realistic\" is not available yet; \"perspective\" stands in for it";
+            self.context.diagnostics.warning(entity.span, message);
+            entity.type_name = "perspective".to_owned();
+            entity.parameters.retain(|p| matches!(p.name.as_str(), "shutteropen" | "shutterclose" | "focaldistance"));
+        }
+        let corner = |p: [u32; 2]| Point2::new(p[0] as f32, p[1] as f32);
+        let crop = Bounds2::new(corner(film.crop.min), corner(film.crop.max));
+        let mut p = Parameters::new(&entity, &mut self.context);
+        let camera = Camera::from_parameters(&mut p, world_from_camera, film.resolution, crop);
+        p.finish();
+        camera
+    }
+
+    pub(super) fn build_filter(&mut self) -> Filter {
+        let fallback = Entity::new("gaussian");
+        let entity = self.document.filter.as_ref().unwrap_or(&fallback);
+        let mut p = Parameters::new(entity, &mut self.context);
+        let filter = Filter::from_parameters(&mut p);
+        p.finish();
+        filter
+    }
+}

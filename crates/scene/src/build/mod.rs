@@ -1,0 +1,174 @@
+//! From a document and its assets to the scene.
+//!
+//! Everything is looked at even after an error, so that all problems are reported together. The order follows who
+//! needs whom: textures, materials, shapes, geometry, lights, light sampler, camera and film.
+
+mod camera;
+mod film;
+mod lights;
+mod materials;
+mod shapes;
+#[cfg(test)]
+mod tests;
+mod textures;
+
+use std::collections::HashMap;
+
+use etendue_geometry::{GeometryBuilder, ObjectId};
+
+use crate::assets::Assets;
+use crate::diagnostics::{Diagnostics, Span, nearest_name};
+use crate::document::{Document, Entity, InstanceEntity};
+use crate::parameters::{BuildContext, ParameterSpec};
+use crate::scene::{MaterialId, Scene, ShapeAttributes};
+use crate::texture::Textures;
+
+pub use film::{FILMS, SAMPLERS};
+pub use shapes::SHAPES;
+
+use shapes::{Emitter, MeshStore, Target};
+
+/// The state of a build.
+struct Builder<'d, 'a> {
+    document: &'d Document,
+    context: BuildContext<'a>,
+    textures: Textures,
+    material_ids: Vec<MaterialId>,
+    named_materials: HashMap<String, MaterialId>,
+    attributes: Vec<ShapeAttributes>,
+    emitters: Vec<Emitter>,
+}
+
+impl Scene {
+    /// Builds the scene that a document describes, and says all that is wrong with it.
+    ///
+    /// There is a scene unless a diagnostic is an error.
+    #[must_use]
+    pub fn build(document: &Document, mut assets: Assets) -> (Option<Self>, Diagnostics) {
+        let loaded = std::mem::take(&mut assets.meshes);
+        let mut builder = Builder {
+            document,
+            context: BuildContext::new(&assets),
+            textures: Textures::default(),
+            material_ids: Vec::new(),
+            named_materials: HashMap::new(),
+            attributes: Vec::new(),
+            emitters: Vec::new(),
+        };
+        builder.build_textures();
+        builder.warn_of_media();
+        let materials = builder.build_materials();
+        let object_shapes = document.objects.iter().flat_map(|object| &object.shapes);
+        let mut meshes = MeshStore::new(loaded, document.shapes.iter().chain(object_shapes));
+        let geometry = builder.build_geometry(&mut meshes);
+        drop(meshes);
+        let film = film::build_film(document, &mut builder.context);
+        let sampler = film::build_sampler(document, &mut builder.context);
+        let filter = builder.build_filter();
+        let camera = builder.build_camera(&film);
+        builder.check_accelerator();
+        let lights = builder.build_lights(&geometry);
+        if lights.lights.is_empty() {
+            builder.context.diagnostics.warning(None, "the scene has no lights; the image will be black");
+        }
+        let Builder { context, mut textures, attributes, .. } = builder;
+        textures.spectra = context.spectra;
+        if context.diagnostics.has_errors() {
+            return (None, context.diagnostics);
+        }
+        let has_alpha = attributes.iter().any(|a| a.alpha.is_some());
+        let scene = Self {
+            geometry,
+            attributes,
+            textures,
+            materials,
+            lights: lights.lights,
+            infinite_lights: lights.infinite,
+            light_sampler: lights.sampler,
+            camera,
+            film,
+            filter,
+            sampler,
+            integrator: document.integrator.clone().unwrap_or_else(|| Entity::new("volpath")),
+            has_alpha,
+        };
+        (Some(scene), context.diagnostics)
+    }
+}
+
+impl Builder<'_, '_> {
+    fn build_geometry(&mut self, meshes: &mut MeshStore) -> etendue_geometry::Geometry {
+        let document = self.document;
+        let mut geometry = GeometryBuilder::new();
+        for shape in &document.shapes {
+            self.add_shape(shape, Target::World, &mut geometry, meshes);
+        }
+        let mut objects: HashMap<&str, ObjectId> = HashMap::new();
+        for object in &document.objects {
+            let id = geometry.begin_object();
+            objects.insert(&object.name, id);
+            for shape in &object.shapes {
+                self.add_shape(shape, Target::Object(id), &mut geometry, meshes);
+            }
+        }
+        for instance in &document.instances {
+            if let Some(object) = self.find_object(&objects, instance) {
+                geometry.add_instance(object, &instance.world_from_instance);
+            }
+        }
+        geometry.build()
+    }
+
+    fn find_object(&mut self, objects: &HashMap<&str, ObjectId>, instance: &InstanceEntity) -> Option<ObjectId> {
+        let found = objects.get(instance.object.as_str()).copied();
+        if found.is_none() {
+            let diagnostics = &mut self.context.diagnostics;
+            unknown_name(diagnostics, instance.span, "object", &instance.object, objects.keys().copied());
+        }
+        found
+    }
+
+    fn warn_of_media(&mut self) {
+        for medium in &self.document.media {
+            self.context.diagnostics.warning(
+                medium.entity.span,
+                format!("participating media are not available yet; \"{}\" is rendered as empty space", medium.name),
+            );
+        }
+    }
+
+    fn check_accelerator(&mut self) {
+        let Some(entity) = &self.document.accelerator else { return };
+        match entity.type_name.as_str() {
+            "bvh" => {}
+            "kdtree" => {
+                let message = "the accelerator \"kdtree\" is not available yet; \"bvh\" stands in for it";
+                self.context.diagnostics.warning(entity.span, message);
+            }
+            unknown => unknown_name(&mut self.context.diagnostics, entity.span, "accelerator", unknown, ["bvh"]),
+        }
+    }
+}
+
+/// Names of a table of types.
+fn known_names(table: &'static [(&'static str, &'static [ParameterSpec])]) -> impl Iterator<Item = &'static str> {
+    table.iter().map(|(name, _)| *name)
+}
+
+/// Reports a name that nothing has, with the nearest one that something has.
+pub(crate) fn unknown_name<'n>(
+    diagnostics: &mut Diagnostics,
+    span: Option<Span>,
+    kind: &str,
+    name: &str,
+    known: impl IntoIterator<Item = &'n str>,
+) {
+    let mut known: Vec<&str> = known.into_iter().collect();
+    known.sort_unstable();
+    let error = diagnostics.error(span, format!("unknown {kind} \"{name}\""));
+    if let Some(near) = nearest_name(name, known.iter().copied()) {
+        error.with_help(format!("did you mean \"{near}\"?"));
+    } else if !known.is_empty() {
+        error.with_help(format!("known are: {}", known.join(", ")));
+    }
+}

@@ -1,0 +1,274 @@
+//! The immutable scene: everything that a method of light transport may ask.
+
+use etendue_geometry::{Geometry, GeometryId, Hit, Reference, SurfacePoint};
+use etendue_math::{Bounds3, Point3, Ray, SamplerSettings, Vector3, hash64, offset_ray_origin};
+use etendue_spectrum::{Sampled, Wavelengths};
+
+use crate::bsdf::Bsdf;
+use crate::camera::Camera;
+use crate::document::Entity;
+use crate::film::FilmSettings;
+use crate::filter::Filter;
+use crate::light::{Light, LightContext, LightId, LightSampler};
+use crate::material::{Material, MaterialContext};
+use crate::texture::{FloatTexture, TextureContext, Textures};
+
+/// Index of a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MaterialId(pub u32);
+
+/// What a scene knows of a shape beyond its geometry.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeAttributes {
+    /// Its material.
+    pub material: MaterialId,
+    /// Share of rays that meet it; `None` for all.
+    pub alpha: Option<FloatTexture>,
+    /// The light of its first primitive, if it emits; those of the other primitives follow.
+    pub first_light: Option<LightId>,
+}
+
+/// A point on a surface as a path finds it.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Differential geometry.
+    pub point: SurfacePoint,
+    /// Unit direction back to where the path came from.
+    pub wo: Vector3,
+    /// Time in seconds.
+    pub time: f32,
+    /// Material.
+    pub material: MaterialId,
+    /// The light that it is, if it emits.
+    pub light: Option<LightId>,
+}
+
+impl Surface {
+    /// A ray that leaves the surface in the unit direction `w`.
+    #[inline]
+    #[must_use]
+    pub fn spawn_ray(&self, w: Vector3) -> Ray {
+        let origin = offset_ray_origin(self.point.p, self.point.p_error, self.point.ng, w);
+        Ray { origin, direction: w, time: self.time }
+    }
+
+    /// What lights are asked about.
+    #[inline]
+    #[must_use]
+    pub const fn reference(&self) -> Reference {
+        Reference { p: self.point.p, n: Some(self.point.ns) }
+    }
+}
+
+/// The part of a segment that shadow rays test: the rest is rounding at the light.
+const SHADOW_END: f32 = 1.0 - 1e-4;
+
+/// Everything there is, immutable.
+#[derive(Debug)]
+pub struct Scene {
+    /// Shapes.
+    pub geometry: Geometry,
+    /// Material, alpha and light of each shape, by its id.
+    pub attributes: Vec<ShapeAttributes>,
+    /// Textures, images and tabulated spectra.
+    pub textures: Textures,
+    /// Materials by id.
+    pub materials: Vec<Material>,
+    /// Lights by id.
+    pub lights: Vec<Light>,
+    /// The lights that surround the scene.
+    pub infinite_lights: Vec<LightId>,
+    /// How a light is chosen.
+    pub light_sampler: LightSampler,
+    /// The camera.
+    pub camera: Camera,
+    /// The film's setup.
+    pub film: FilmSettings,
+    /// The pixel filter.
+    pub filter: Filter,
+    /// The sampler's setup.
+    pub sampler: SamplerSettings,
+    /// The method that the document asks for, with its parameters.
+    pub integrator: Entity,
+    /// True if some shape has an alpha texture.
+    pub has_alpha: bool,
+}
+
+impl Scene {
+    /// The box around everything.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds3 {
+        self.geometry.bounds()
+    }
+
+    /// What lights need of the scene.
+    #[inline]
+    #[must_use]
+    pub const fn light_context(&self) -> LightContext<'_> {
+        LightContext { geometry: &self.geometry, textures: &self.textures }
+    }
+
+    /// The light of that id.
+    #[inline]
+    #[must_use]
+    pub fn light(&self, id: LightId) -> &Light {
+        &self.lights[id.0 as usize]
+    }
+
+    /// The nearest surface that the ray meets before `t_max`.
+    #[inline]
+    #[must_use]
+    pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<Hit> {
+        if self.has_alpha {
+            self.geometry.intersect(ray, t_max, &|hit| self.is_opaque(ray, hit))
+        } else {
+            self.geometry.intersect(ray, t_max, &|_| true)
+        }
+    }
+
+    /// True if the ray meets anything before `t_max`.
+    #[inline]
+    #[must_use]
+    pub fn occluded(&self, ray: &Ray, t_max: f32) -> bool {
+        if self.has_alpha {
+            self.geometry.occluded(ray, t_max, &|hit| self.is_opaque(ray, hit))
+        } else {
+            self.geometry.occluded(ray, t_max, &|_| true)
+        }
+    }
+
+    /// The alpha test: a ray meets a surface of alpha a with probability a, decided by a hash of the ray and the
+    /// shape, so that the same ray always finds the same.
+    fn is_opaque(&self, ray: &Ray, hit: &Hit) -> bool {
+        let Some(alpha) = self.attributes[hit.geometry.0 as usize].alpha else {
+            return true;
+        };
+        let alpha = match alpha {
+            FloatTexture::Constant(alpha) => alpha,
+            FloatTexture::Node(_) => {
+                let point = self.geometry.surface_point(ray, hit);
+                let context = TextureContext {
+                    p: point.p,
+                    n: point.ns,
+                    uv: point.uv,
+                    face_index: point.face_index,
+                    ..TextureContext::default()
+                };
+                self.textures.eval_float(alpha, &context)
+            }
+        };
+        if alpha >= 1.0 {
+            return true;
+        }
+        if alpha <= 0.0 {
+            return false;
+        }
+        let bits = |x: f32, y: f32| u64::from(x.to_bits()) << 32 | u64::from(y.to_bits());
+        let shape = u64::from(hit.geometry.0) << 32 | u64::from(hit.primitive);
+        let (o, d) = (ray.origin, ray.direction);
+        let hash = hash64(&[bits(o.x, o.y), bits(o.z, d.x), bits(d.y, d.z), shape]);
+        (hash >> 40) as f32 / (1_u64 << 24) as f32 <= alpha
+    }
+
+    /// The surface at a hit of the ray, whose direction has length 1.
+    #[must_use]
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let attributes = &self.attributes[hit.geometry.0 as usize];
+        Surface {
+            point: self.geometry.surface_point(ray, hit),
+            wo: -ray.direction,
+            time: ray.time,
+            material: attributes.material,
+            light: attributes.first_light.map(|first| LightId(first.0 + hit.primitive)),
+        }
+    }
+
+    /// How the surface scatters light; `None` where light passes it as if it were not there.
+    ///
+    /// Materials that disperse reduce `lambda` to its first wavelength.
+    #[must_use]
+    pub fn bsdf(&self, surface: &Surface, lambda: &mut Wavelengths) -> Option<Bsdf> {
+        let material = &self.materials[surface.material.0 as usize];
+        material.bsdf(&self.textures, &self.material_context(surface), lambda)
+    }
+
+    fn material_context(&self, surface: &Surface) -> MaterialContext {
+        let point = &surface.point;
+        let (dpdx, dpdy) =
+            self.camera.dpdx_dpdy(point.p, point.ng, surface.time, self.sampler.samples_per_pixel);
+        let [dudx, dudy, dvdx, dvdy] = uv_differentials(point, dpdx, dpdy);
+        let texture = TextureContext {
+            p: point.p,
+            dpdx,
+            dpdy,
+            n: point.ns,
+            uv: point.uv,
+            dudx,
+            dudy,
+            dvdx,
+            dvdy,
+            face_index: point.face_index,
+        };
+        MaterialContext::new(texture, point, surface.wo)
+    }
+
+    /// Radiance in W/(m^2 sr nm) that a surface emits back along the path.
+    #[must_use]
+    pub fn emitted(&self, surface: &Surface, lambda: &Wavelengths) -> Sampled {
+        let Some(light) = surface.light else {
+            return Sampled::ZERO;
+        };
+        let point = &surface.point;
+        self.light(light).le(&self.light_context(), point.p, point.ng, point.uv, surface.wo, lambda)
+    }
+
+    /// The share of light that gets from a surface to a point: 0 or 1 without media. `interface` surfaces let it
+    /// pass.
+    #[must_use]
+    pub fn transmittance(&self, from: &Surface, to: Point3, to_error: Vector3, to_n: etendue_math::Normal3) -> f32 {
+        let origin = offset_ray_origin(from.point.p, from.point.p_error, from.point.ng, to - from.point.p);
+        let target = offset_ray_origin(to, to_error, to_n, origin - to);
+        self.transmittance_along(Ray { origin, direction: target - origin, time: from.time }, SHADOW_END)
+    }
+
+    /// The share of light that gets from a surface to infinity in the unit direction `wi`.
+    #[must_use]
+    pub fn transmittance_to_infinity(&self, from: &Surface, wi: Vector3) -> f32 {
+        self.transmittance_along(from.spawn_ray(wi), f32::INFINITY)
+    }
+
+    fn transmittance_along(&self, ray: Ray, t_max: f32) -> f32 {
+        let blocked = self.geometry.occluded(&ray, t_max, &|hit: &Hit| {
+            let material = self.attributes[hit.geometry.0 as usize].material;
+            if matches!(self.materials[material.0 as usize], Material::Interface) {
+                return false;
+            }
+            !self.has_alpha || self.is_opaque(&ray, hit)
+        });
+        if blocked { 0.0 } else { 1.0 }
+    }
+
+    /// Material, alpha and light of a shape.
+    #[must_use]
+    pub fn attributes(&self, geometry: GeometryId) -> &ShapeAttributes {
+        &self.attributes[geometry.0 as usize]
+    }
+}
+
+/// Changes of u and v per pixel, from those of the position: the least-squares solution of
+/// dp = dpdu du + dpdv dv (Pharr et al. 2023, section 10.1.1). Zero where the surface has no parameters.
+fn uv_differentials(point: &SurfacePoint, dpdx: Vector3, dpdy: Vector3) -> [f32; 4] {
+    let (dpdu, dpdv) = (point.dpdu, point.dpdv);
+    let (uu, uv, vv) = (dpdu.dot(dpdu), dpdu.dot(dpdv), dpdv.dot(dpdv));
+    let inverse = 1.0 / (f64::from(uu) * f64::from(vv) - f64::from(uv) * f64::from(uv)) as f32;
+    if !inverse.is_finite() {
+        return [0.0; 4];
+    }
+    let solve = |dp: Vector3| {
+        let (u, v) = (dpdu.dot(dp), dpdv.dot(dp));
+        [(vv * u - uv * v) * inverse, (uu * v - uv * u) * inverse]
+    };
+    let ([dudx, dvdx], [dudy, dvdy]) = (solve(dpdx), solve(dpdy));
+    let clamp = |x: f32| if x.is_finite() { x.clamp(-1e8, 1e8) } else { 0.0 };
+    [dudx, dudy, dvdx, dvdy].map(clamp)
+}
