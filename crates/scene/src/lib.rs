@@ -2,6 +2,7 @@
 //! immutable [`Scene`]. Knows neither methods of light transport nor files.
 
 pub mod assets;
+pub mod bsdf;
 pub mod camera;
 pub mod diagnostics;
 pub mod document;

@@ -1,0 +1,90 @@
+//! Metal: mirror facets with the Fresnel reflectance of a complex index of refraction.
+//!
+//! `f = D(wm) F(wo·wm) G(wo, wi) / (4 |cos_o| |cos_i|)` with the half vector `wm` (Torrance and Sparrow 1967, "Theory
+//! for Off-Specular Reflection From Roughened Surfaces"; Cook and Torrance 1982). This is SPEC BRDF-16 with GGX and
+//! Smith's shadowing in place of Gaussian slopes and V-grooves; see [`super::microfacet`] for what is lost.
+
+use etendue_math::{Point2, Vector3};
+use etendue_spectrum::Sampled;
+
+use super::fresnel::{fresnel_conductor, reflect};
+use super::local::{abs_cos, mirror, same_hemisphere};
+use super::microfacet::Microfacets;
+use super::{BsdfSample, Lobes};
+
+/// A smooth or rough metal in the shading frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conductor {
+    /// Roughness.
+    pub microfacets: Microfacets,
+    /// Real part of the index relative to the outside.
+    pub eta: Sampled,
+    /// Imaginary part of the index (absorption) relative to the outside.
+    pub k: Sampled,
+}
+
+impl Conductor {
+    /// The lobe present.
+    #[inline]
+    #[must_use]
+    pub fn lobes(&self) -> Lobes {
+        if self.microfacets.is_smooth() { Lobes::SPECULAR_REFLECT } else { Lobes::GLOSSY_REFLECT }
+    }
+
+    /// f in 1/sr, without the cosine.
+    #[inline]
+    #[must_use]
+    pub fn eval(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> Sampled {
+        let Some(wm) = self.half_vector(wo, wi, lobes) else { return Sampled::ZERO };
+        let fresnel = fresnel_conductor(wo.dot(wm), self.eta, self.k);
+        fresnel * (0.25 * self.microfacets.d(wm) * self.microfacets.g_over_cosines(wo, wi)) // [SPEC BRDF-16]
+    }
+
+    /// The mirror direction of a facet visible from `wo`.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, wo: Vector3, u: Point2, lobes: Lobes) -> Option<BsdfSample> {
+        if !lobes.intersects(self.lobes()) {
+            return None;
+        }
+        if self.microfacets.is_smooth() {
+            let fresnel = fresnel_conductor(abs_cos(wo), self.eta, self.k);
+            return Some(BsdfSample::specular(mirror(wo), fresnel, 1.0, Lobes::SPECULAR_REFLECT, 1.0));
+        }
+        let wm = self.microfacets.sample_visible_normal(wo, u);
+        let wi = reflect(wo, wm);
+        if !same_hemisphere(wo, wi) {
+            return None;
+        }
+        let cos_m = wo.dot(wm).abs();
+        let pdf_w = self.microfacets.visible_normal_pdf(wo, wm) / (4.0 * cos_m);
+        (pdf_w > 0.0 && pdf_w.is_finite()).then(|| BsdfSample {
+            wi,
+            weight: fresnel_conductor(cos_m, self.eta, self.k) * self.microfacets.g_over_g1(wo, wi),
+            pdf_w,
+            pmf: 0.0,
+            lobe: Lobes::GLOSSY_REFLECT,
+            eta: 1.0,
+            roughness: self.microfacets.mean_alpha(),
+        })
+    }
+
+    /// Density of [`Self::sample`] in 1/sr.
+    #[inline]
+    #[must_use]
+    pub fn pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> f32 {
+        let Some(wm) = self.half_vector(wo, wi, lobes) else { return 0.0 };
+        self.microfacets.visible_normal_pdf(wo, wm) / (4.0 * wo.dot(wm).abs())
+    }
+
+    /// The facet normal that reflects `wo` to `wi`, in the upper hemisphere; `None` if nothing glossy happens.
+    #[inline]
+    fn half_vector(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> Option<Vector3> {
+        if self.microfacets.is_smooth() || !lobes.contains(Lobes::GLOSSY_REFLECT) || !same_hemisphere(wo, wi)
+        {
+            return None;
+        }
+        let wm = (wo + wi).try_normalized()?;
+        Some(if wm.z < 0.0 { -wm } else { wm })
+    }
+}
