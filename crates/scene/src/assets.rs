@@ -4,7 +4,9 @@
 //! Everything is keyed by the file name exactly as the parameter wrote it.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
+use etendue_image::Texels;
 use etendue_math::{Normal3, Point2, Point3};
 
 /// A mesh read from a file, in object space.
@@ -30,6 +32,8 @@ pub struct LoadedMesh {
 pub struct Assets {
     /// Meshes by file name.
     pub meshes: HashMap<String, LoadedMesh>,
+    /// Pictures by file name, shared with the scene's textures and lights.
+    pub images: HashMap<String, Arc<Texels>>,
     /// Measured spectra by file name: wavelengths in nanometres, ascending, with their values.
     pub spectra: HashMap<String, Vec<[f32; 2]>>,
 }
