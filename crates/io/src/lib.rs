@@ -1,3 +1,20 @@
-//! Étendue's io crate.
+//! Bytes to values and back: scene files, meshes, images and measured spectra. The only crate below the front ends
+//! that opens files.
+//!
+//! Reading a scene has two steps: [`read_pbrt`] makes a [`Document`](etendue_scene::Document), which names files, and
+//! [`load_assets`] reads these.
 
+pub mod assets;
+pub mod error;
 pub mod images;
+pub mod pbrt;
+pub mod ply;
+pub mod spd;
+
+mod file;
+
+pub use assets::load_assets;
+pub use error::FileError;
+pub use file::read_file;
+pub use pbrt::{read_pbrt, read_pbrt_str, write_pbrt};
+pub use ply::read_ply;

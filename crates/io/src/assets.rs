@@ -1,0 +1,139 @@
+//! Reads the files that a document names, in parallel.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use etendue_image::Texels;
+use etendue_scene::document::{Entity, ShapeEntity, Value};
+use etendue_scene::{Assets, Diagnostics, Document, Span};
+use etendue_spectrum::{known_but_missing, named_spectrum};
+use rayon::prelude::*;
+
+use crate::file::read_file;
+use crate::images::read_texels;
+use crate::ply::{PlyMesh, read_ply};
+use crate::spd::read_spd;
+
+#[cfg(test)]
+mod tests;
+
+/// What a file should hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Mesh,
+    Image,
+    Spectrum,
+}
+
+/// Files by kind and name, with the first parameter that names each.
+type Wanted = BTreeMap<(Kind, String), Option<Span>>;
+
+/// What was read.
+enum Loaded {
+    Mesh(PlyMesh),
+    Image(Texels),
+    Spectrum(Vec<[f32; 2]>),
+}
+
+/// Reads all files that parameters of the document name; what cannot be read is an error at the parameter.
+///
+/// Known are the meshes of `plymesh`, the images of `imagemap` textures, of lights and of normal maps, and measured
+/// spectra. File names are relative to [`Document::base_directory`].
+#[must_use]
+pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
+    let wanted: Vec<_> = wanted_files(document).into_iter().collect();
+    let load = |((kind, name), _): &((Kind, String), Option<Span>)| {
+        load_file(*kind, &document.base_directory.join(name))
+    };
+    // Files differ much in size, so that each is a task of its own.
+    let loaded: Vec<_> = wanted.par_iter().with_max_len(1).map(load).collect();
+    let (mut assets, mut diagnostics) = (Assets::default(), Diagnostics::default());
+    for (((_, name), span), loaded) in wanted.into_iter().zip(loaded) {
+        match loaded {
+            Ok(Loaded::Mesh(ply)) => {
+                for warning in ply.warnings {
+                    diagnostics.warning(span, format!("mesh \"{name}\": {warning}"));
+                }
+                assets.meshes.insert(name, ply.mesh);
+            }
+            Ok(Loaded::Image(texels)) => {
+                assets.images.insert(name, Arc::new(texels));
+            }
+            Ok(Loaded::Spectrum(samples)) => {
+                assets.spectra.insert(name, samples);
+            }
+            Err(message) => {
+                diagnostics.error(span, message);
+            }
+        }
+    }
+    (assets, diagnostics)
+}
+
+fn load_file(kind: Kind, path: &Path) -> Result<Loaded, String> {
+    let in_file = |why: String| format!("`{}`: {why}", path.display());
+    if kind == Kind::Image {
+        return read_texels(path).map(Loaded::Image).map_err(|error| in_file(error.to_string()));
+    }
+    let bytes = read_file(path).map_err(|error| error.to_string())?;
+    match kind {
+        Kind::Mesh => read_ply(&bytes).map(Loaded::Mesh).map_err(|error| in_file(error.to_string())),
+        _ => read_spd(&bytes).map(Loaded::Spectrum).map_err(|error| in_file(error.to_string())),
+    }
+}
+
+fn wanted_files(document: &Document) -> Wanted {
+    let mut wanted = Wanted::new();
+    let objects = document.objects.iter().flat_map(|object| &object.shapes);
+    for ShapeEntity { entity, .. } in document.shapes.iter().chain(objects) {
+        if entity.type_name == "plymesh" {
+            add(&mut wanted, Kind::Mesh, entity, "filename");
+        }
+        add_spectra(&mut wanted, entity);
+    }
+    for texture in &document.textures {
+        if texture.entity.type_name == "imagemap" {
+            add(&mut wanted, Kind::Image, &texture.entity, "filename");
+        }
+        add_spectra(&mut wanted, &texture.entity);
+    }
+    for light in document.lights.iter().map(|light| &light.entity).chain(&document.area_lights) {
+        add(&mut wanted, Kind::Image, light, "filename");
+        add_spectra(&mut wanted, light);
+    }
+    for material in &document.materials {
+        add(&mut wanted, Kind::Image, &material.entity, "normalmap");
+        add_spectra(&mut wanted, &material.entity);
+    }
+    let camera = document.camera.as_ref().map(|camera| &camera.entity);
+    let media = document.media.iter().map(|medium| &medium.entity);
+    for entity in media.chain(camera).chain(&document.film) {
+        add_spectra(&mut wanted, entity);
+    }
+    wanted
+}
+
+/// The file that a string parameter of that name gives.
+fn add(wanted: &mut Wanted, kind: Kind, entity: &Entity, name: &str) {
+    for parameter in entity.parameters.iter().filter(|parameter| parameter.name == name) {
+        let Value::Strings(files) = &parameter.value else { continue };
+        for file in files.iter().filter(|file| !file.is_empty()) {
+            wanted.entry((kind, file.clone())).or_insert(parameter.span);
+        }
+    }
+}
+
+/// Files of spectra: names of spectra that are not built in and look like files.
+///
+/// Other unknown names are left to the scene builder, which knows better what to suggest.
+fn add_spectra(wanted: &mut Wanted, entity: &Entity) {
+    for parameter in &entity.parameters {
+        let Value::SpectrumNames(names) = &parameter.value else { continue };
+        for name in names.iter().filter(|name| name.contains(['.', '/'])) {
+            if named_spectrum(name).is_none() && known_but_missing(name).is_none() {
+                wanted.entry((Kind::Spectrum, name.clone())).or_insert(parameter.span);
+            }
+        }
+    }
+}
