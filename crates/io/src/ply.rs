@@ -56,7 +56,9 @@ impl fmt::Display for PlyError {
             Self::Truncated(element, index, count) => {
                 write!(f, "the data ends at {element} {index} of {count} that the header declares")
             }
-            Self::NotANumber(element, index, word) => write!(f, "{element} {index}: `{word}` is not a number"),
+            Self::NotANumber(element, index, word) => {
+                write!(f, "{element} {index}: `{word}` is not a number")
+            }
             Self::NotFinite(index) => write!(f, "vertex {index} has a coordinate that is not finite"),
             Self::BadIndex(face, index, n_vertices) => {
                 write!(f, "face {face} refers to vertex {index}, but there are {n_vertices} vertices")
@@ -152,7 +154,9 @@ impl Reader {
         for index in 0..element.count {
             body.list_and_scalars(element, index, list, &mut corners, &mut row)?;
             let n = self.ply.mesh.positions.len();
-            if self.has_vertices && let Some(bad) = corners.iter().find(|i| **i < 0 || **i >= n as i64) {
+            if self.has_vertices
+                && let Some(bad) = corners.iter().find(|i| **i < 0 || **i >= n as i64)
+            {
                 return Err(PlyError::BadIndex(index, *bad, n));
             }
             self.face(&corners, face_index.map(|column| row[column] as i32));
@@ -197,7 +201,8 @@ impl Reader {
         mesh.triangles.shrink_to_fit();
         let warnings = &mut self.ply.warnings;
         if self.n_cut > 0 {
-            warnings.push(format!("{} polygons of more than four corners were cut into triangles", self.n_cut));
+            warnings
+                .push(format!("{} polygons of more than four corners were cut into triangles", self.n_cut));
         }
         if self.n_degenerate > 0 {
             warnings.push(format!("{} faces of less than three corners were left out", self.n_degenerate));

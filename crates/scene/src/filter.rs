@@ -263,85 +263,6 @@ impl Filter {
             }
         };
         let default_radius = kind.default_radius();
-        let radius =
-            Vector2::new(parameters.float("xradius", default_radius), parameters.float("yradius", default_radius));
-        Self::new(kind, radius).unwrap_or_else(|| {
-            let span = parameters.span();
-            let message = format!("the \"{name}\" filter needs positive radii and a positive integral");
-            parameters.diagnostics().error(span, message);
-            Self::default()
-        })
-    }
-}
-
-const fn radius(&self) -> Vector2 {
-        self.radius
-    }
-
-    /// The filter at an offset from the pixel's centre, not normalised.
-    #[must_use]
-    pub fn eval(&self, offset: Vector2) -> f32 {
-        let along = |x: f32, radius: f32| self.kind.profile(f64::from(x), f64::from(radius));
-        (along(offset.x, self.radius.x) * along(offset.y, self.radius.y)) as f32
-    }
-
-    /// Integral of [`eval`](Self::eval) over the support, in square pixels.
-    #[must_use]
-    pub const fn integral(&self) -> f32 {
-        self.integral
-    }
-
-    /// Draws an offset with a density proportional to the absolute value of the filter.
-    #[inline]
-    #[must_use]
-    pub fn sample(&self, u: Point2) -> FilterSample {
-        if let Some(axes) = &self.axes {
-            let (x, weight_x) = axes[0].sample(u.x);
-            let (y, weight_y) = axes[1].sample(u.y);
-            return FilterSample { offset: Vector2::new(x, y), weight: weight_x * weight_y };
-        }
-        let offset = match self.kind {
-            FilterKind::Triangle => {
-                Vector2::new(warp::sample_tent(u.x, self.radius.x), warp::sample_tent(u.y, self.radius.y))
-            }
-            _ => Vector2::new(self.radius.x * (2.0 * u.x - 1.0), self.radius.y * (2.0 * u.y - 1.0)),
-        };
-        FilterSample { offset, weight: 1.0 }
-    }
-
-    /// What scene files may say of the filter named `name`.
-    #[must_use]
-    pub fn parameter_specs(name: &str) -> &'static [ParameterSpec] {
-        match name {
-            "box" => &BOX_PARAMETERS,
-            "triangle" => &TRIANGLE_PARAMETERS,
-            "gaussian" => &GAUSSIAN_PARAMETERS,
-            "mitchell" => &MITCHELL_PARAMETERS,
-            "sinc" => &SINC_PARAMETERS,
-            _ => &[],
-        }
-    }
-
-    /// Reads a filter; problems are reported and answered with the default filter.
-    pub fn from_parameters(parameters: &mut Parameters<'_, '_>) -> Self {
-        let name = parameters.entity().type_name.as_str();
-        let kind = match name {
-            "box" => FilterKind::Box,
-            "triangle" => FilterKind::Triangle,
-            "gaussian" => FilterKind::Gaussian { sigma: parameters.float("sigma", 0.5) },
-            "mitchell" => FilterKind::Mitchell {
-                b: parameters.float("B", 1.0 / 3.0),
-                c: parameters.float("C", 1.0 / 3.0),
-            },
-            "sinc" => FilterKind::LanczosSinc { tau: parameters.float("tau", 3.0) },
-            _ => {
-                let span = parameters.span();
-                let error = parameters.diagnostics().error(span, format!("unknown pixel filter \"{name}\""));
-                error.with_help(format!("known are: {}", Self::NAMES.join(", ")));
-                return Self::default();
-            }
-        };
-        let default_radius = kind.default_radius();
         let radius = Vector2::new(
             parameters.float("xradius", default_radius),
             parameters.float("yradius", default_radius),
@@ -353,11 +274,6 @@ const fn radius(&self) -> Vector2 {
             Self::default()
         })
     }
-}
-
-/// Inverse of the distribution function of `1 - |x|` on [-1, 1].
-fn sample_triangle(u: f32) -> f32 {
-    if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() }
 }
 
 const fn radius(name: &'static str, default: &'static str) -> ParameterSpec {

@@ -70,7 +70,9 @@ pub(super) fn place_of(name: &str) -> Option<Place> {
 pub(super) fn help_for_old(name: &str) -> Option<&'static str> {
     Some(match name {
         "WorldEnd" => "pbrt-v4 ends the world with the file: remove `WorldEnd`",
-        "SurfaceIntegrator" | "VolumeIntegrator" | "Renderer" => "pbrt-v4 has one directive for this: `Integrator`",
+        "SurfaceIntegrator" | "VolumeIntegrator" | "Renderer" => {
+            "pbrt-v4 has one directive for this: `Integrator`"
+        }
         "Volume" => "pbrt-v4 describes media by `MakeNamedMedium` and `MediumInterface`",
         _ => return None,
     })

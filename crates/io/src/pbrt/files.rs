@@ -31,7 +31,8 @@ impl Files {
         let path = self.base_directory.join(name);
         let canonical = path.canonicalize().unwrap_or_else(|_| path.clone());
         if let Some(first) = self.chain.iter().position(|(_, open)| *open == canonical) {
-            let names: Vec<_> = self.chain[first..].iter().map(|(name, _)| name.as_str()).chain([name]).collect();
+            let names: Vec<_> =
+                self.chain[first..].iter().map(|(name, _)| name.as_str()).chain([name]).collect();
             let message = format!("the file includes itself: {}", names.join(" → "));
             builder.diagnostics.error(span, message);
             return;

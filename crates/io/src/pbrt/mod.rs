@@ -47,8 +47,8 @@ pub fn read_pbrt_str(name: &str, text: &str, base_directory: &Path) -> (Document
 /// The same for bytes that may not be text.
 #[must_use]
 pub fn read_pbrt_bytes(name: &str, bytes: Vec<u8>, base_directory: &Path) -> (Document, Diagnostics) {
-    let mut files = Files { base_directory: base_directory.to_owned(), ..Files::default() };
-    let mut builder = Builder::default();
+    let (mut files, mut builder) = (Files::default(), Builder::default());
+    files.base_directory = base_directory.to_owned();
     match crate::file::decompressed(&bytes) {
         Ok(content) => files.read_bytes(name, content.into_owned(), &mut builder),
         Err(why) => {

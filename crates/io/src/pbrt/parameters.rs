@@ -295,7 +295,13 @@ impl Parser<'_, '_> {
             }
             _ => {}
         }
-        let article = if item == Item::Integer { "an " } else if item == Item::Bool { "" } else { "a " };
+        let article = if item == Item::Integer {
+            "an "
+        } else if item == Item::Bool {
+            ""
+        } else {
+            "a "
+        };
         let message = format!("{} should be {article}{}", self.describe(Some(token)), item.name());
         self.fail(token, message)
     }

@@ -94,8 +94,10 @@ impl<'a> Parser<'a, '_> {
                 TokenKind::Close => depth = depth.saturating_sub(1),
                 TokenKind::Word => {
                     let word = self.lexer.text(token).as_bytes();
-                    let looks_like_one =
-                        depth == 0 && word.len() >= 4 && word[0].is_ascii_uppercase() && word[1].is_ascii_lowercase();
+                    let looks_like_one = depth == 0
+                        && word.len() >= 4
+                        && word[0].is_ascii_uppercase()
+                        && word[1].is_ascii_lowercase();
                     if looks_like_one || self.is_directive(token) {
                         self.lexer.unread(token);
                         return;
@@ -122,11 +124,8 @@ impl<'a> Parser<'a, '_> {
             Some(token) => self.lexer.unread(token),
             None => {}
         }
-        let message = format!(
-            "`{}` needs {what}, but {} follows",
-            self.lexer.text(directive),
-            self.describe(next)
-        );
+        let message =
+            format!("`{}` needs {what}, but {} follows", self.lexer.text(directive), self.describe(next));
         self.fail(directive, message)
     }
 
@@ -163,7 +162,8 @@ impl<'a> Parser<'a, '_> {
         let mut numbers = [0.0; N];
         for number in &mut numbers {
             let token = self.argument(directive, &format!("{N} numbers"))?;
-            let value = (token.kind == TokenKind::Word).then(|| parse_float(self.lexer.text(token))).flatten();
+            let value =
+                (token.kind == TokenKind::Word).then(|| parse_float(self.lexer.text(token))).flatten();
             let Some(value) = value else {
                 let found = self.describe(Some(token));
                 let message = format!("`{}` needs {N} numbers: {found} is none", self.lexer.text(directive));
@@ -189,11 +189,8 @@ impl<'a> Parser<'a, '_> {
         if token.kind == kind {
             return Ok(());
         }
-        let message = format!(
-            "`{}` needs {what}, not {}",
-            self.lexer.text(directive),
-            self.describe(Some(token))
-        );
+        let message =
+            format!("`{}` needs {what}, not {}", self.lexer.text(directive), self.describe(Some(token)));
         self.lexer.unread(token);
         self.fail(token, message)
     }
@@ -202,7 +199,8 @@ impl<'a> Parser<'a, '_> {
         match transform {
             Some(transform) => Ok(transform),
             None => {
-                let message = format!("the transform of this `{}` has no inverse", self.lexer.text(directive));
+                let message =
+                    format!("the transform of this `{}` has no inverse", self.lexer.text(directive));
                 self.fail(directive, message)
             }
         }
@@ -223,7 +221,8 @@ impl Parser<'_, '_> {
             TokenKind::Word => self.lexer.text(directive),
             TokenKind::UnterminatedText => return self.fail(directive, "this string has no closing quote"),
             _ => {
-                let message = format!("a directive should stand here, not {}", self.describe(Some(directive)));
+                let message =
+                    format!("a directive should stand here, not {}", self.describe(Some(directive)));
                 return self.fail(directive, message);
             }
         };

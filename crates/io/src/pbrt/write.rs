@@ -235,7 +235,12 @@ impl Writer<'_> {
     }
 
     /// An attribute block around an entity; `content` gets the parameters that the entity gives itself.
-    fn block<'e>(&mut self, target: &str, entity: &'e Entity, content: impl FnOnce(&mut Self, &'e [Parameter])) {
+    fn block<'e>(
+        &mut self,
+        target: &str,
+        entity: &'e Entity,
+        content: impl FnOnce(&mut Self, &'e [Parameter]),
+    ) {
         let outside = self.color_space;
         self.line("AttributeBegin");
         self.indent += 1;

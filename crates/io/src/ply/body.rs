@@ -47,7 +47,8 @@ impl<'a> Body<'a> {
             return Ok(());
         }
         // The last number of an ASCII file needs no blank.
-        let available = (self.rest.len() as u64 + u64::from(self.encoding == Encoding::Ascii)) / smallest as u64;
+        let available =
+            (self.rest.len() as u64 + u64::from(self.encoding == Encoding::Ascii)) / smallest as u64;
         if element.count > available {
             return Err(PlyError::Truncated(element.name.clone(), available, element.count));
         }

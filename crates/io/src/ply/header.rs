@@ -100,7 +100,14 @@ impl Header {
         for line_number in 1.. {
             let fail = |why: String| Err(PlyError::Header(line_number, why));
             let Some(length) = bytes[start..].iter().position(|b| *b == b'\n') else {
-                return fail(if line_number == 1 { "the file does not begin with `ply`" } else { "there is no `end_header`" }.into());
+                return fail(
+                    if line_number == 1 {
+                        "the file does not begin with `ply`"
+                    } else {
+                        "there is no `end_header`"
+                    }
+                    .into(),
+                );
             };
             let line = String::from_utf8_lossy(&bytes[start..start + length]);
             start += length + 1;
@@ -154,9 +161,7 @@ fn property(words: &[&str]) -> Result<Property, String> {
             }
             Ok(Property { name: (*name).to_owned(), kind: PropertyKind::List { count, item } })
         }
-        [kind, name] => {
-            Ok(Property { name: (*name).to_owned(), kind: PropertyKind::Scalar(scalar(kind)?) })
-        }
+        [kind, name] => Ok(Property { name: (*name).to_owned(), kind: PropertyKind::Scalar(scalar(kind)?) }),
         _ => Err("a property has a type and a name".to_owned()),
     }
 }
