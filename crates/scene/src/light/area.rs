@@ -1,0 +1,248 @@
+//! Surfaces that emit: radiance L into all directions of one or both sides, Phi = pi A L for one side (SPEC RAD-9,
+//! EMI-5, EMI-6). Each primitive of an emissive shape is a light; what it emits is shared.
+//!
+//! As in pbrt-v4, a picture is looked up with the shape's (u, v), v upwards. Power is split between the primitives by
+//! area: `power` of a mesh is that of the whole shape (pbrt-v4 gives that power to every triangle).
+
+use std::f32::consts::PI;
+
+use etendue_geometry::{GeometryId, Reference};
+use etendue_math::{Frame, Normal3, Point2, Point3, Ray, Vector3, warp};
+use etendue_spectrum::{Sampled, Spectrum, SpectrumTables, Wavelengths};
+
+use super::build::{self, spec};
+use super::{
+    EmittedRay, LightBounds, LightContext, LightImage, LightImageId, LightPoint, LightPower, LightSample,
+    LightTables,
+};
+use crate::parameters::{ParameterSpec, Parameters};
+
+/// Index of an emission in [`LightTables`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct AreaEmissionId(pub u32);
+
+/// What a surface emits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AreaEmission {
+    /// Radiance, where there is no picture.
+    radiance: Spectrum,
+    /// Picture of radiance, and radiance where it is 1 in multiples of its illuminant.
+    picture: Option<(LightImageId, f32)>,
+    /// True if both sides emit.
+    two_sided: bool,
+    /// Measures of the mean radiance.
+    mean: LightPower,
+}
+
+impl AreaEmission {
+    /// Parameters in scene files.
+    pub const PARAMETERS: &[ParameterSpec] = &[
+        spec("L", "spectrum", "illuminant of the colour space", "cd/m^2", "radiance, if no picture is given"),
+        spec("filename", "string", "", "", "picture of radiance over the (u, v) of the shape"),
+        spec("twosided", "bool", "false", "", "true if both sides emit"),
+        build::SCALE,
+        spec("power", "float", "", "lm", "flux of the whole shape; replaces the size of L"),
+        super::LightUnits::PARAMETER,
+    ];
+
+    /// The same radiance everywhere.
+    #[must_use]
+    pub fn uniform(radiance: Spectrum, two_sided: bool, spectra: &SpectrumTables) -> Self {
+        Self { radiance, picture: None, two_sided, mean: LightPower::of(&radiance, spectra) }
+    }
+
+    /// Radiance from a picture, times `scale`.
+    #[must_use]
+    pub fn pictured(
+        id: LightImageId,
+        image: &LightImage,
+        scale: f32,
+        two_sided: bool,
+        spectra: &SpectrumTables,
+    ) -> Self {
+        let radiance = image.mean().scaled(scale);
+        Self { picture: Some((id, scale)), ..Self::uniform(radiance, two_sided, spectra) }
+    }
+
+    /// True if both sides emit.
+    #[must_use]
+    pub const fn two_sided(&self) -> bool {
+        self.two_sided
+    }
+
+    /// Radiance that leaves a surface with geometric normal `ng` at texture coordinates `uv` in the unit direction `wo`.
+    #[must_use]
+    pub fn le(
+        &self,
+        context: &LightContext,
+        ng: Normal3,
+        uv: Point2,
+        wo: Vector3,
+        lambda: &Wavelengths,
+    ) -> Sampled {
+        if !self.two_sided && ng.dot_vector(wo) <= 0.0 {
+            return Sampled::ZERO;
+        }
+        let Some((image, scale)) = self.picture else {
+            return self.radiance.sample(context.spectra, lambda);
+        };
+        let uv = Point2::new(uv.x, 1.0 - uv.y);
+        context.tables.image(image).bilinear(uv, context.spectra, lambda) * scale
+    }
+
+    /// Flux per square metre of surface, of one or both sides.
+    #[must_use]
+    pub fn exitance(&self) -> LightPower {
+        self.mean * f64::from(self.sides() * PI)
+    }
+
+    const fn sides(&self) -> f32 {
+        if self.two_sided { 2.0 } else { 1.0 }
+    }
+
+    /// From an `AreaLightSource`; `area_m2` is the area of the whole shape.
+    pub(super) fn build(p: &mut Parameters, area_m2: f32, tables: &mut LightTables) -> Option<Self> {
+        let two_sided = p.bool("twosided", false);
+        let power = p.float("power", -1.0);
+        let sides = if two_sided { 2.0 } else { 1.0 };
+        let flux_per_radiance = PI * sides * area_m2;
+        if !p.has("filename") {
+            let source = build::Source::read(p, "L");
+            let radiance = source.spectrum(p, power, |l| l * f64::from(flux_per_radiance));
+            return Some(Self::uniform(radiance, two_sided, &p.context.spectra));
+        }
+        if p.has("L") {
+            let span = p.span_of("filename");
+            p.diagnostics().error(span, "an area light takes \"L\" or \"filename\", not both");
+            return None;
+        }
+        let size = build::PictureScale::read(p);
+        let picture = build::read_picture(p)?;
+        let image =
+            LightImage::new(picture.width, picture.height, &picture.rgb, picture.space, picture.white);
+        let scale = size.factor(p, &picture, power, image.mean(), flux_per_radiance);
+        let id = tables.add_image(image);
+        Some(Self::pictured(id, tables.image(id), scale, two_sided, &p.context.spectra))
+    }
+}
+
+/// One primitive of an emissive shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AreaLight {
+    /// The shape.
+    pub geometry: GeometryId,
+    /// Triangle or patch of the shape; 0 for quadrics.
+    pub primitive: u32,
+    /// What it emits.
+    pub emission: AreaEmissionId,
+}
+
+impl AreaLight {
+    fn emission<'a>(&self, context: &LightContext<'a>) -> &'a AreaEmission {
+        &context.tables.emissions[self.emission.0 as usize]
+    }
+
+    pub(super) fn le(
+        &self,
+        context: &LightContext,
+        ng: Normal3,
+        uv: Point2,
+        wo: Vector3,
+        lambda: &Wavelengths,
+    ) -> Sampled {
+        self.emission(context).le(context, ng, uv, wo, lambda)
+    }
+
+    pub(super) fn sample_li(
+        &self,
+        context: &LightContext,
+        reference: &Reference,
+        u: Point2,
+        lambda: &Wavelengths,
+    ) -> Option<LightSample> {
+        let (s, pdf_w) = context.geometry.sample_from(self.geometry, self.primitive, reference, u)?;
+        let to_light = s.p - reference.p;
+        let wi = to_light.try_normalized()?;
+        let le = self.le(context, s.n, s.uv, -wi, lambda);
+        (pdf_w > 0.0 && pdf_w.is_finite() && !le.is_black()).then(|| LightSample {
+            wi,
+            le,
+            pdf_w,
+            distance: to_light.length(),
+            is_delta: false,
+            p_light: Some(LightPoint { p: s.p, p_error: s.p_error, n: Some(s.n), uv: s.uv }),
+        })
+    }
+
+    pub(super) fn pdf_li(&self, context: &LightContext, reference: &Reference, wi: Vector3) -> f32 {
+        context.geometry.pdf_from(self.geometry, self.primitive, reference, wi)
+    }
+
+    pub(super) fn pdf_li_at(
+        &self,
+        context: &LightContext,
+        reference: &Reference,
+        p: Point3,
+        ng: Normal3,
+    ) -> f32 {
+        context.geometry.pdf_from_point(self.geometry, self.primitive, reference, p, ng)
+    }
+
+    pub(super) fn sample_le(
+        &self,
+        context: &LightContext,
+        u_position: Point2,
+        mut u_direction: Point2,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedRay> {
+        let s = context.geometry.sample_area(self.geometry, self.primitive, u_position)?;
+        let emission = self.emission(context);
+        let mut side = 1.0;
+        if emission.two_sided {
+            side = if u_direction.x < 0.5 { 1.0 } else { -1.0 };
+            u_direction.x = (2.0 * u_direction.x).fract();
+        }
+        let local = warp::sample_cosine_hemisphere(u_direction);
+        let w = Frame::from_z(s.n.as_vector() * side).to_world(local);
+        let pdf_w = warp::cosine_hemisphere_pdf(local.z) / emission.sides();
+        let le = emission.le(context, s.n, s.uv, w, lambda);
+        (pdf_w > 0.0 && s.pdf_a > 0.0 && !le.is_black()).then(|| EmittedRay {
+            ray: Ray::new(s.p, w),
+            p_error: s.p_error,
+            n: Some(s.n),
+            uv: s.uv,
+            le,
+            cosine: local.z,
+            pdf_a: s.pdf_a,
+            pdf_w,
+        })
+    }
+
+    pub(super) fn pdf_le(&self, context: &LightContext, ray: &Ray, ng: Option<Normal3>) -> (f32, f32) {
+        let Some(ng) = ng else { return (0.0, 0.0) };
+        let emission = self.emission(context);
+        let cosine = ng.dot_vector(ray.direction);
+        let cosine = if emission.two_sided { cosine.abs() } else { cosine.max(0.0) };
+        let area = context.geometry.area(self.geometry, self.primitive);
+        (1.0 / area, warp::cosine_hemisphere_pdf(cosine) / emission.sides())
+    }
+
+    pub(super) fn power(&self, context: &LightContext) -> LightPower {
+        let area = context.geometry.area(self.geometry, self.primitive);
+        self.emission(context).exitance() * f64::from(area)
+    }
+
+    pub(super) fn bounds(&self, context: &LightContext) -> Option<LightBounds> {
+        let emission = self.emission(context);
+        let (w, cos_theta_o) = context.geometry.emission_cone(self.geometry, self.primitive);
+        let area = context.geometry.area(self.geometry, self.primitive);
+        Some(LightBounds {
+            bounds: context.geometry.primitive_bounds(self.geometry, self.primitive),
+            w,
+            cos_theta_o,
+            cos_theta_e: 0.0,
+            intensity: (emission.mean.weight * f64::from(area)) as f32,
+            two_sided: emission.two_sided,
+        })
+    }
+}
