@@ -1,0 +1,45 @@
+//! Ideal diffuse reflection: matte paint, paper, plaster.
+
+use etendue_spectrum::{Spectrum, Wavelengths};
+
+use super::{MaterialContext, Materials, Perturbation, spec};
+use crate::bsdf::{BsdfKind, Diffuse};
+use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
+use crate::texture::{SpectrumTexture, Textures};
+
+/// Parameters of `diffuse`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiffuseMaterial {
+    /// Albedo, clamped to [0, 1].
+    pub reflectance: SpectrumTexture,
+    /// Relief.
+    pub perturbation: Perturbation,
+}
+
+impl DiffuseMaterial {
+    /// What scene files may say.
+    pub const PARAMETERS: &'static [ParameterSpec] = &[
+        ParameterSpec {
+            name: "reflectance",
+            kind: "spectrum texture",
+            default: "0.5",
+            unit: "",
+            doc: "Fraction of light reflected, in [0, 1].",
+        },
+        spec::DISPLACEMENT,
+        spec::NORMAL_MAP,
+    ];
+
+    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
+        Self {
+            reflectance: p.spectrum_texture("reflectance", Spectrum::Constant(0.5), SpectrumRole::Albedo),
+            perturbation: Perturbation::build(p, materials),
+        }
+    }
+
+    #[inline]
+    pub(super) fn bsdf(&self, textures: &Textures, ctx: &MaterialContext, lambda: &Wavelengths) -> BsdfKind {
+        let reflectance = textures.eval_spectrum(self.reflectance, &ctx.texture, lambda).clamp(0.0, 1.0);
+        BsdfKind::Diffuse(Diffuse { reflectance })
+    }
+}

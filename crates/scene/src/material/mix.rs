@@ -1,0 +1,93 @@
+//! One of two materials at each point, chosen at random in a given proportion.
+//!
+//! The choice is a hash of position and direction, so that asking twice gives the same answer, and the mean over
+//! a pixel is the mixture.
+
+use std::collections::HashMap;
+
+use etendue_math::{hash64, unit_f32};
+
+use super::{MaterialContext, MaterialId};
+use crate::diagnostics::nearest_name;
+use crate::parameters::{ParameterSpec, Parameters};
+use crate::texture::{FloatTexture, Textures};
+
+/// Parameters of `mix`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MixMaterial {
+    /// The materials at amount 0 and at amount 1.
+    pub materials: [MaterialId; 2],
+    /// Share of the second material, in [0, 1].
+    pub amount: FloatTexture,
+}
+
+impl MixMaterial {
+    /// What scene files may say.
+    pub const PARAMETERS: &'static [ParameterSpec] = &[
+        ParameterSpec {
+            name: "materials",
+            kind: "string",
+            default: "",
+            unit: "",
+            doc: "Names of two materials, defined before.",
+        },
+        ParameterSpec {
+            name: "amount",
+            kind: "float texture",
+            default: "0.5",
+            unit: "",
+            doc: "Share of the second material, in [0, 1].",
+        },
+    ];
+
+    pub(super) fn build(p: &mut Parameters<'_, '_>, names: &HashMap<String, MaterialId>) -> Option<Self> {
+        let amount = p.float_texture("amount", 0.5);
+        let materials = p.strings("materials").unwrap_or_default();
+        let span = p.span_of("materials");
+        let [first, second] = materials else {
+            p.diagnostics().error(span, format!("\"materials\" takes two names, not {}", materials.len()));
+            return None;
+        };
+        let mut find = |name: &String| {
+            let found = names.get(name).copied();
+            if found.is_none() {
+                let near = nearest_name(name, names.keys().map(String::as_str)).map(str::to_owned);
+                let error = p
+                    .diagnostics()
+                    .error(span, format!("no material named \"{name}\" is defined before its use"));
+                if let Some(near) = near {
+                    error.with_help(format!("did you mean \"{near}\"?"));
+                }
+            }
+            found
+        };
+        let (first, second) = (find(first), find(second));
+        Some(Self { materials: [first?, second?], amount })
+    }
+
+    /// The material at a point.
+    #[inline]
+    pub(super) fn choose(&self, textures: &Textures, ctx: &MaterialContext) -> MaterialId {
+        let amount = textures.eval_float(self.amount, &ctx.texture);
+        if amount <= 0.0 {
+            return self.materials[0];
+        }
+        if amount >= 1.0 {
+            return self.materials[1];
+        }
+        self.materials[usize::from(amount >= self.random(ctx))]
+    }
+
+    /// A number in [0, 1) that depends on nothing but the arguments.
+    fn random(&self, ctx: &MaterialContext) -> f32 {
+        let pair = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
+        let (p, wo) = (ctx.texture.p, ctx.wo);
+        let hash = hash64(&[
+            pair(p.x.to_bits(), p.y.to_bits()),
+            pair(p.z.to_bits(), wo.x.to_bits()),
+            pair(wo.y.to_bits(), wo.z.to_bits()),
+            pair(self.materials[0].0, self.materials[1].0),
+        ]);
+        unit_f32((hash >> 32) as u32)
+    }
+}
