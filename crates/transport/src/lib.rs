@@ -1,1 +1,17 @@
-//! Étendue's transport crate.
+//! How light is computed: one file or folder for each method, and the pass loop that runs them.
+//!
+//! Knows neither files nor terminals, clocks or thread pools; nothing here can fail.
+
+pub mod integrator;
+pub mod lpe;
+pub mod method;
+pub mod path;
+pub mod path_tracing;
+pub mod render;
+
+pub use integrator::{Control, Integrator, PassEnd, Passes, RayCounts};
+pub use method::{INTEGRATORS, method};
+pub use render::{Flow, Observer, Outcome, Stop, Unobserved, render};
+
+#[cfg(test)]
+mod tests;

@@ -149,6 +149,12 @@ impl FilmTile<'_> {
         self.pixels.bounds
     }
 
+    /// True if samples should come with [`Features`].
+    #[must_use]
+    pub const fn wants_features(&self) -> bool {
+        self.layout.n_features > 0
+    }
+
     /// Adds one sample. NaN, infinite or negative radiance is counted and taken as black; debug builds panic.
     pub fn add(&mut self, pixel: [u32; 2], sample: &PixelSample<'_>) {
         let mut radiance = sample.radiance;
@@ -369,6 +375,27 @@ impl Film {
         for (sum, term) in self.pixels.values.iter_mut().zip(&other.pixels.values) {
             *sum += *term;
         }
+    }
+
+    /// Relative standard error of the image: the root mean square over pixels of the standard error of luminance,
+    /// divided by the luminance plus a tenth of its mean, so that black pixels do not count without bound.
+    /// Infinite for fewer than two passes.
+    #[must_use]
+    pub fn relative_error(&self) -> f64 {
+        if self.n_passes() < 2 {
+            return f64::INFINITY;
+        }
+        let image = self.develop();
+        let Some(rgb) = image.rgb_pixels() else { return f64::INFINITY };
+        let luminance: Vec<f64> = rgb.iter().map(|c| self.settings.luminance(*c)).collect();
+        let n = luminance.len() as f64;
+        let floor = 0.1 * luminance.iter().sum::<f64>() / n;
+        let variance = self.variance_channel().values;
+        let terms = luminance.iter().zip(&variance).map(|(y, v)| {
+            let scale = y.max(0.0) + floor;
+            if scale > 0.0 { f64::from(*v) / (scale * scale) } else { 0.0 }
+        });
+        (terms.sum::<f64>() / n).sqrt()
     }
 
     /// The exact sums, for checkpoints: weights, then values, 16 bytes each.

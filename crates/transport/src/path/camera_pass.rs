@@ -1,0 +1,191 @@
+//! One sample for every pixel, in tiles, in parallel: the frame of every method whose paths start at the camera.
+
+use std::cell::Cell;
+
+use etendue_geometry::Hit;
+use etendue_math::{Point2, Ray, Sampler};
+use etendue_scene::film::{Features, FilmTile, PixelBounds, PixelSample, TileSums};
+use etendue_scene::{Film, Scene};
+use etendue_spectrum::{Sampled, Wavelengths};
+use rayon::prelude::*;
+
+use crate::integrator::{Control, PassEnd, RayCounts};
+use crate::lpe::{LayerRecorder, PathExpressions};
+
+/// Pixels across and down of a tile: small enough to balance threads, large enough to amortise the merge.
+const TILE_SIZE: u32 = 32;
+
+/// How wavelengths are chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WavelengthMode {
+    /// Four wavelengths for each path, rotated copies of a hero.
+    #[default]
+    Hero,
+    /// One random wavelength for each path (SPEC SPD-2), to compare with.
+    Single,
+}
+
+impl WavelengthMode {
+    fn sample(self, u: f32) -> Wavelengths {
+        match self {
+            Self::Hero => Wavelengths::sample_visible(u),
+            Self::Single => Wavelengths::sample_single(u),
+        }
+    }
+}
+
+/// The scene as one thread sees it during one tile: counts the rays that are traced.
+#[derive(Debug)]
+pub struct Tracer<'s> {
+    /// The scene.
+    pub scene: &'s Scene,
+    closest: Cell<u64>,
+    shadow: Cell<u64>,
+}
+
+impl<'s> Tracer<'s> {
+    /// Starts counting.
+    #[must_use]
+    pub const fn new(scene: &'s Scene) -> Self {
+        Self { scene, closest: Cell::new(0), shadow: Cell::new(0) }
+    }
+
+    /// The nearest surface along the ray.
+    #[inline]
+    #[must_use]
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        self.closest.set(self.closest.get() + 1);
+        self.scene.intersect(ray, f32::INFINITY)
+    }
+
+    /// Counts a shadow ray.
+    #[inline]
+    pub fn count_shadow_ray(&self) {
+        self.shadow.set(self.shadow.get() + 1);
+    }
+
+    /// Rays so far.
+    #[must_use]
+    pub fn counts(&self) -> RayCounts {
+        RayCounts { closest: self.closest.get(), shadow: self.shadow.get() }
+    }
+}
+
+/// What stays the same over a pass.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraPass<'p> {
+    /// Choice of wavelengths.
+    pub wavelengths: WavelengthMode,
+    /// Layers by path expression, in the film's order.
+    pub expressions: &'p PathExpressions,
+}
+
+impl CameraPass<'_> {
+    /// Adds one sample to every pixel. `radiance` follows a path from the camera and returns the radiance it brings.
+    pub fn run(
+        &self,
+        scene: &Scene,
+        pass: u64,
+        film: &mut Film,
+        control: &Control<'_>,
+        radiance: impl Fn(&Tracer<'_>, &mut CameraPath<'_>) -> Sampled + Sync,
+    ) -> PassEnd {
+        let tiles = film.tiles(TILE_SIZE);
+        let finished: Vec<Option<TileSums>> = tiles
+            .into_par_iter()
+            .map(|bounds| {
+                if control.is_cancelled() {
+                    return None;
+                }
+                let tracer = Tracer::new(scene);
+                let sums = self.run_tile(&tracer, pass, film, bounds, &radiance);
+                control.tile_done(bounds.n_pixels() as u64, tracer.counts());
+                Some(sums)
+            })
+            .collect();
+        let complete = finished.iter().all(Option::is_some);
+        // Whole passes only, but for the very first: better a part of a picture than none.
+        if complete || film.n_passes() == 0 {
+            for sums in finished.iter().flatten() {
+                film.add_sums(sums);
+            }
+        }
+        if complete { PassEnd::Complete } else { PassEnd::Cancelled }
+    }
+
+    fn run_tile(
+        &self,
+        tracer: &Tracer<'_>,
+        pass: u64,
+        film: &Film,
+        bounds: PixelBounds,
+        radiance: &(impl Fn(&Tracer<'_>, &mut CameraPath<'_>) -> Sampled + Sync),
+    ) -> TileSums {
+        let mut tile = film.start_tile(bounds);
+        for pixel in bounds.pixels() {
+            self.add_sample(tracer, pass, pixel, &mut tile, radiance);
+        }
+        Film::finish_tile(tile)
+    }
+
+    fn add_sample(
+        &self,
+        tracer: &Tracer<'_>,
+        pass: u64,
+        pixel: [u32; 2],
+        tile: &mut FilmTile<'_>,
+        radiance: &impl Fn(&Tracer<'_>, &mut CameraPath<'_>) -> Sampled,
+    ) {
+        let scene = tracer.scene;
+        let mut sampler = Sampler::new(&scene.sampler, pixel, pass);
+        let lambda = self.wavelengths.sample(sampler.next_1d());
+        let filter = scene.filter.sample(sampler.next_2d());
+        let p_film = Point2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5) + filter.offset;
+        let u_time = sampler.next_1d();
+        let u_lens = sampler.next_2d();
+        let mut state = CameraPath {
+            ray: Ray::new(etendue_math::Point3::ORIGIN, etendue_math::Vector3::new(0.0, 0.0, 1.0)),
+            lambda,
+            sampler,
+            layers: self.expressions.start(),
+            features: tile.wants_features().then(Features::default),
+        };
+        let mut value = Sampled::ZERO;
+        let mut weight = 1.0;
+        if let Some(camera_ray) = scene.camera.sample_ray(p_film, u_lens, u_time) {
+            state.ray = camera_ray.ray;
+            weight = camera_ray.weight;
+            value = radiance(tracer, &mut state) * weight;
+        }
+        let mut layers = [Sampled::ZERO; crate::lpe::MAX_EXPRESSIONS];
+        let n_layers = state.layers.radiance().len();
+        for (layer, radiance) in layers.iter_mut().zip(state.layers.radiance()) {
+            *layer = *radiance * weight;
+        }
+        tile.add(
+            pixel,
+            &PixelSample {
+                radiance: value,
+                lambda: &state.lambda,
+                filter_weight: filter.weight,
+                features: state.features,
+                layers: &layers[..n_layers],
+            },
+        );
+    }
+}
+
+/// A camera path in the making, with everything random about it.
+#[derive(Debug)]
+pub struct CameraPath<'e> {
+    /// The ray from the camera.
+    pub ray: Ray,
+    /// Its wavelengths; dispersion reduces them.
+    pub lambda: Wavelengths,
+    /// The numbers of this sample.
+    pub sampler: Sampler,
+    /// Layers by path expression.
+    pub layers: LayerRecorder<'e>,
+    /// Features of the first surface, if the film wants them.
+    pub features: Option<Features>,
+}

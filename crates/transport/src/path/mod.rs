@@ -1,0 +1,6 @@
+//! The steps that methods share: weights, roulette, direct light, and passes over the pixels of a camera.
+
+pub mod camera_pass;
+pub mod direct;
+pub mod mis;
+pub mod roulette;

@@ -1,0 +1,382 @@
+//! Path tracing (Kajiya 1986) with next event estimation, multiple importance sampling and Russian roulette.
+//!
+//! A path leaves the camera and scatters until it is lost:
+//! `L = sum over k of beta_k L_e(x_k)`, where `beta_k` is the product of `f |cos| / pdf` along the way. Each light is
+//! found in two ways: by sampling it from every vertex, and by running into it. The power heuristic weighs the two
+//! (Veach and Guibas 1995). Unbiased but for `maxdepth`.
+//!
+//! SPEC: PT-1 to PT-5, EQ-1, EQ-7, MC-11, MC-12, MC-15.
+
+use etendue_math::Ray;
+use etendue_scene::bsdf::{Bsdf, BsdfSample, Lobes, TransportMode};
+use etendue_scene::document::Entity;
+use etendue_scene::film::{AovSpace, Features, FilmKind};
+use etendue_scene::light::LightId;
+use etendue_scene::parameters::{ParameterSpec, Parameters};
+use etendue_scene::scene::Surface;
+use etendue_scene::{Film, Scene};
+use etendue_geometry::Reference;
+use etendue_spectrum::{Sampled, Wavelengths};
+
+use crate::integrator::{Control, Integrator, PassEnd, Passes};
+use crate::lpe::{Event, LayerRecorder, PathExpressions};
+use crate::path::camera_pass::{CameraPass, CameraPath, Tracer, WavelengthMode};
+use crate::path::direct::{sample_light, unoccluded_light, visibility};
+use crate::path::mis::power_heuristic;
+use crate::path::roulette::survival_probability;
+
+/// How lights are found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightStrategy {
+    /// By sampling them and by running into them, weighted (the best).
+    #[default]
+    Both,
+    /// By sampling them alone, but for what sampling cannot find.
+    Lights,
+    /// By running into them alone: slow for small lights, black for point lights (SPEC PT-1).
+    Scattering,
+}
+
+/// Settings of the path tracer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathSettings {
+    /// Most scattering events of a path; paths that would need more are lost, which darkens.
+    pub max_depth: u32,
+    /// Paths of this many scattering events and more play roulette.
+    pub roulette_depth: u32,
+    /// Widens narrow lobes after the first wide scattering event: less noise, biased.
+    pub regularize: bool,
+    /// How lights are found.
+    pub lights: LightStrategy,
+    /// How wavelengths are chosen.
+    pub wavelengths: WavelengthMode,
+}
+
+impl Default for PathSettings {
+    fn default() -> Self {
+        Self {
+            max_depth: 5,
+            roulette_depth: 1,
+            regularize: false,
+            lights: LightStrategy::default(),
+            wavelengths: WavelengthMode::default(),
+        }
+    }
+}
+
+impl PathSettings {
+    /// Parameters in scene files.
+    pub const PARAMETERS: &'static [ParameterSpec] = &[
+        ParameterSpec {
+            name: "maxdepth",
+            kind: "integer",
+            default: "5",
+            unit: "",
+            doc: "most scattering events of a path; longer paths are lost",
+        },
+        ParameterSpec {
+            name: "roulettedepth",
+            kind: "integer",
+            default: "1",
+            unit: "",
+            doc: "scattering events before roulette may end a path",
+        },
+        ParameterSpec {
+            name: "regularize",
+            kind: "bool",
+            default: "false",
+            unit: "",
+            doc: "widen narrow lobes after the first wide one: less noise, biased",
+        },
+        ParameterSpec {
+            name: "lights",
+            kind: "string",
+            default: "both",
+            unit: "",
+            doc: "how lights are found: both, lights (sampling alone) or scattering (running into them alone)",
+        },
+        ParameterSpec {
+            name: "lightsampler",
+            kind: "string",
+            default: "bvh",
+            unit: "",
+            doc: "how a light is chosen: bvh, power or uniform",
+        },
+        ParameterSpec {
+            name: "wavelengths",
+            kind: "string",
+            default: "hero",
+            unit: "",
+            doc: "wavelengths of a path: hero (four) or single",
+        },
+    ];
+
+    /// Reads the parameters of an integrator entity.
+    pub fn from_parameters(p: &mut Parameters<'_, '_>) -> Self {
+        let default = Self::default();
+        let max_depth = p.integer("maxdepth", default.max_depth as i32).max(0) as u32;
+        let roulette_depth = p.integer("roulettedepth", default.roulette_depth as i32).max(0) as u32;
+        let regularize = p.bool("regularize", false);
+        let strategies = [
+            ("both", LightStrategy::Both),
+            ("lights", LightStrategy::Lights),
+            ("scattering", LightStrategy::Scattering),
+        ];
+        let lights = p.choice("lights", "both", &strategies);
+        let modes = [("hero", WavelengthMode::Hero), ("single", WavelengthMode::Single)];
+        let wavelengths = p.choice("wavelengths", "hero", &modes);
+        // Read where the scene is built.
+        p.ignore("lightsampler");
+        Self { max_depth, roulette_depth, regularize, lights, wavelengths }
+    }
+
+    /// The entity that gives these settings.
+    #[must_use]
+    pub fn to_entity(self) -> Entity {
+        use etendue_scene::document::Value;
+        Entity::new("path").with("maxdepth", Value::Integers(vec![self.max_depth as i32]))
+    }
+}
+
+/// The path tracer.
+#[derive(Clone, Debug)]
+pub struct PathTracer {
+    settings: PathSettings,
+    expressions: PathExpressions,
+}
+
+impl PathTracer {
+    /// A path tracer that fills the film's layers by these expressions, in their order.
+    #[must_use]
+    pub const fn new(settings: PathSettings, expressions: PathExpressions) -> Self {
+        Self { settings, expressions }
+    }
+}
+
+impl Integrator for PathTracer {
+    fn passes(&self) -> Passes {
+        Passes::Independent
+    }
+
+    fn run_pass(&mut self, scene: &Scene, pass: u64, film: &mut Film, control: &Control<'_>) -> PassEnd {
+        let camera_pass = CameraPass { wavelengths: self.settings.wavelengths, expressions: &self.expressions };
+        let settings = self.settings;
+        camera_pass.run(scene, pass, film, control, |tracer, path| Walk::new(&settings, path).follow(tracer, path))
+    }
+}
+
+/// The vertex that the path last scattered at, for the density with which it might have sampled a light instead.
+#[derive(Clone, Copy, Debug)]
+struct LastScattering {
+    reference: Reference,
+    /// Density of the direction taken, per steradian; `None` if no light sample could have found it.
+    pdf_w: Option<f32>,
+}
+
+/// A random walk from the camera.
+struct Walk<'s> {
+    settings: &'s PathSettings,
+    ray: Ray,
+    /// Throughput: product of `f |cos| / pdf`, in radiance's measure.
+    beta: Sampled,
+    /// Product of squared relative indices, so that roulette sees flux and not radiance.
+    eta_squared: f32,
+    /// Scattering events so far.
+    depth: u32,
+    last: Option<LastScattering>,
+    has_scattered_widely: bool,
+    radiance: Sampled,
+}
+
+impl<'s> Walk<'s> {
+    fn new(settings: &'s PathSettings, path: &CameraPath<'_>) -> Self {
+        Self {
+            settings,
+            ray: path.ray,
+            beta: Sampled::ONE,
+            eta_squared: 1.0,
+            depth: 0,
+            last: None,
+            has_scattered_widely: false,
+            radiance: Sampled::ZERO,
+        }
+    }
+
+    fn follow(mut self, tracer: &Tracer<'_>, path: &mut CameraPath<'_>) -> Sampled {
+        let scene = tracer.scene;
+        loop {
+            let Some(hit) = tracer.intersect(&self.ray) else {
+                self.add_surroundings(scene, path);
+                break;
+            };
+            let surface = scene.surface(&self.ray, &hit);
+            self.add_emission(scene, &surface, path);
+            let Some(mut bsdf) = scene.bsdf(&surface, &mut path.lambda) else {
+                // Light passes as if the surface were not there.
+                self.ray = surface.spawn_ray(self.ray.direction);
+                continue;
+            };
+            if self.depth == 0
+                && let Some(features) = &mut path.features
+            {
+                *features = describe(scene, &surface, &bsdf, &path.lambda);
+            }
+            if self.depth == self.settings.max_depth {
+                break;
+            }
+            if self.settings.regularize && self.has_scattered_widely {
+                bsdf.regularize();
+            }
+            if self.settings.lights != LightStrategy::Scattering && bsdf.lobes().has_non_specular() {
+                self.add_direct_light(tracer, &surface, &bsdf, path);
+            }
+            let (u_component, u) = (path.sampler.next_1d(), path.sampler.next_2d());
+            let Some(sample) = bsdf.sample(surface.wo, u_component, u, TransportMode::Radiance, Lobes::ALL) else {
+                break;
+            };
+            self.scatter(&surface, &sample, &mut path.layers);
+            if !self.survives_roulette(path) {
+                break;
+            }
+        }
+        self.radiance
+    }
+
+    /// Weight of light that scattering found, against the same light sampled from the last vertex.
+    fn scattering_weight(&self, scene: &Scene, light: LightId, pdf_light: impl Fn(&Reference) -> f32) -> f32 {
+        let Some(LastScattering { reference, pdf_w: Some(pdf_scatter) }) = &self.last else {
+            return 1.0;
+        };
+        match self.settings.lights {
+            LightStrategy::Scattering => 1.0,
+            LightStrategy::Lights => 0.0,
+            LightStrategy::Both => {
+                let pdf_light = scene.light_sampler.pmf(reference, light) * pdf_light(reference);
+                power_heuristic(*pdf_scatter, pdf_light)
+            }
+        }
+    }
+
+    fn add_surroundings(&mut self, scene: &Scene, path: &mut CameraPath<'_>) {
+        let context = scene.light_context();
+        for &id in &scene.infinite_lights {
+            let light = scene.light(id);
+            let le = light.le_infinite(&context, self.ray.origin, self.ray.direction, &path.lambda);
+            if le.is_black() {
+                continue;
+            }
+            let wi = self.ray.direction;
+            let weight = self.scattering_weight(scene, id, |reference| light.pdf_li(&context, reference, wi));
+            self.add(self.beta * le * weight, &mut path.layers);
+        }
+    }
+
+    fn add_emission(&mut self, scene: &Scene, surface: &Surface, path: &mut CameraPath<'_>) {
+        let Some(id) = surface.light else { return };
+        let le = scene.emitted(surface, &path.lambda);
+        if le.is_black() {
+            return;
+        }
+        let context = scene.light_context();
+        let light = scene.light(id);
+        let weight = self.scattering_weight(scene, id, |reference| {
+            light.pdf_li_at(&context, reference, self.ray.direction, surface.point.p, surface.point.ng)
+        });
+        self.add(self.beta * le * weight, &mut path.layers);
+    }
+
+    fn add(&mut self, contribution: Sampled, layers: &mut LayerRecorder<'_>) {
+        self.radiance += contribution;
+        if !layers.is_idle() {
+            layers.emit(contribution);
+        }
+    }
+
+    fn add_direct_light(&mut self, tracer: &Tracer<'_>, surface: &Surface, bsdf: &Bsdf, path: &mut CameraPath<'_>) {
+        let Some(light) = sample_light(tracer.scene, surface, &mut path.sampler, &path.lambda) else {
+            return;
+        };
+        let pdf_scatter = match self.settings.lights {
+            LightStrategy::Both => bsdf.pdf(surface.wo, light.sample.wi, TransportMode::Radiance, Lobes::ALL),
+            LightStrategy::Lights | LightStrategy::Scattering => 0.0,
+        };
+        let unoccluded = unoccluded_light(surface, bsdf, &light, pdf_scatter, Lobes::ALL);
+        if unoccluded.is_black() {
+            return;
+        }
+        let visible = visibility(tracer, surface, &light.sample);
+        if visible == 0.0 {
+            return;
+        }
+        let through = self.beta * visible;
+        self.radiance += through * unoccluded;
+        if path.layers.is_idle() {
+            return;
+        }
+        let glossy = unoccluded_light(surface, bsdf, &light, pdf_scatter, Lobes::GLOSSY);
+        let diffuse = unoccluded_light(surface, bsdf, &light, pdf_scatter, Lobes::DIFFUSE);
+        path.layers.emit_through(Event::glossy(bsdf.glossy_roughness()), through * glossy);
+        path.layers.emit_through(Event::Diffuse, through * diffuse);
+    }
+
+    fn scatter(&mut self, surface: &Surface, sample: &BsdfSample, layers: &mut LayerRecorder<'_>) {
+        self.beta *= sample.weight;
+        self.eta_squared *= sample.eta * sample.eta;
+        self.depth += 1;
+        self.ray = surface.spawn_ray(sample.wi);
+        let pdf_w = (!sample.is_specular()).then_some(sample.pdf_w);
+        self.has_scattered_widely |= pdf_w.is_some();
+        self.last = Some(LastScattering { reference: surface.reference(), pdf_w });
+        if !layers.is_idle() {
+            layers.scatter(event_of(sample));
+        }
+    }
+
+    fn survives_roulette(&mut self, path: &mut CameraPath<'_>) -> bool {
+        if self.depth <= self.settings.roulette_depth {
+            return true;
+        }
+        let probability = survival_probability(self.beta.max_value() * self.eta_squared);
+        if probability == 1.0 {
+            return true;
+        }
+        if path.sampler.next_1d() >= probability {
+            return false;
+        }
+        self.beta /= probability;
+        true
+    }
+}
+
+/// The letter of a scattering event.
+fn event_of(sample: &BsdfSample) -> Event {
+    if sample.is_specular() {
+        Event::Specular
+    } else if sample.lobe.is_glossy() {
+        Event::glossy(sample.roughness)
+    } else {
+        Event::Diffuse
+    }
+}
+
+/// Features of a surface for the auxiliary channels.
+fn describe(scene: &Scene, surface: &Surface, bsdf: &Bsdf, lambda: &Wavelengths) -> Features {
+    let point = &surface.point;
+    let camera_from_world = scene.camera.transform_at(surface.time).inverse();
+    let p_camera = camera_from_world.point(point.p);
+    let to_array = |n: etendue_math::Normal3| {
+        n.as_vector().try_normalized().map_or([0.0; 3], |n| [n.x, n.y, n.z])
+    };
+    let (position, normal, shading_normal) = match scene.film.kind {
+        FilmKind::GBuffer(AovSpace::World) => (point.p, point.ng, bsdf.ns()),
+        _ => (p_camera, camera_from_world.normal(point.ng), camera_from_world.normal(bsdf.ns())),
+    };
+    Features {
+        albedo: scene.film.white_rgb(bsdf.albedo(surface.wo), lambda),
+        position: [position.x, position.y, position.z],
+        normal: to_array(normal),
+        shading_normal: to_array(shading_normal),
+        uv: [point.uv.x, point.uv.y],
+        depth: p_camera.z,
+    }
+}
