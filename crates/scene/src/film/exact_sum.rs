@@ -42,6 +42,24 @@ impl ExactSum {
         self.0 as f64 / SCALE
     }
 
+    /// The sum as an exact sum of `N` floats of falling size; 6 suffice for any.
+    #[must_use]
+    pub fn to_terms<const N: usize>(self) -> [f32; N] {
+        let mut rest = self.0;
+        std::array::from_fn(|_| {
+            let term = rest as f32;
+            rest -= term as i128;
+            // Scaling by a power of two is exact: sums are multiples of 2^-60, far above the smallest float.
+            term / SCALE as f32
+        })
+    }
+
+    /// The sum of one float of [`to_terms`](Self::to_terms), unrounded.
+    #[must_use]
+    pub fn from_term(term: f32) -> Self {
+        Self((f64::from(term) * SCALE) as i128)
+    }
+
     /// The exact state, for checkpoints.
     #[must_use]
     pub const fn to_bytes(self) -> [u8; 16] {
@@ -100,5 +118,19 @@ mod tests {
     fn bytes_round_trip() {
         let sum = ExactSum::of(0.1) + ExactSum::of(-7.25e7);
         assert_eq!(ExactSum::from_bytes(sum.to_bytes()), sum);
+    }
+
+    /// Floats that add up to the sum carry it through image files.
+    #[test]
+    fn terms_round_trip() {
+        for value in [0.0, 1.0, -0.1, 1e-15, 2.5e10, 0.123_456_789_012_345_67] {
+            let mut sum = ExactSum::ZERO;
+            for i in 0..1000 {
+                sum += ExactSum::of(value * (1.0 + f64::from(i) * 1e-5));
+            }
+            let terms = sum.to_terms::<6>();
+            let back = terms.iter().fold(ExactSum::ZERO, |s, t| s + ExactSum::from_term(*t));
+            assert_eq!(back, sum, "{value}");
+        }
     }
 }

@@ -1,6 +1,9 @@
 //! How a film is set up: resolution, crop, sensor and channels.
 
-use etendue_spectrum::{ColorSpace, ColorSpaceName, N_LAMBDA, Sampled, Sensor, Wavelengths};
+use etendue_spectrum::cie::CIE_Y_INTEGRAL;
+use etendue_spectrum::{
+    ColorSpace, ColorSpaceName, LAMBDA_MIN_NM, N_DENSE, N_LAMBDA, Sampled, Sensor, Wavelengths,
+};
 
 use super::ExactSum;
 
@@ -116,12 +119,22 @@ impl FilmSettings {
         if largest > self.max_component { rgb.map(|c| c * (self.max_component / largest)) } else { rgb }
     }
 
-    /// Luminance of a colour in the output colour space.
-    #[inline]
+    /// Luminance of the unit red, green and blue of the output colour space.
     #[must_use]
-    pub fn luminance(&self, rgb: [f32; 3]) -> f64 {
-        let y = ColorSpace::get(self.color_space).xyz_from_rgb[1];
-        (0..3).map(|c| f64::from(y[c]) * f64::from(rgb[c])).sum()
+    pub fn luminance_weights(&self) -> [f32; 3] {
+        ColorSpace::get(self.color_space).xyz_from_rgb[1]
+    }
+
+    /// The colour of a reflectance under the white of the output colour space, without exposure.
+    #[must_use]
+    pub fn white_rgb(&self, reflectance: Sampled, lambda: &Wavelengths) -> [f32; 3] {
+        let illuminant = &ColorSpace::get(self.color_space).illuminant;
+        let white = lambda.lambda_nm().map(|nm| {
+            let index = (nm - LAMBDA_MIN_NM).round().clamp(0.0, (N_DENSE - 1) as f32) as usize;
+            illuminant[index] / CIE_Y_INTEGRAL
+        });
+        let rgb = self.sensor.sensor_rgb(reflectance * Sampled::from_array(white), lambda);
+        rgb.map(|c| c / self.sensor.settings().imaging_ratio())
     }
 
     /// Name of a spectral channel by the spectral EXR layout of Fichet, Pacanowski and Wilkie 2021: `S0.` and the

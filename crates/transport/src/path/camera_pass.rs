@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use etendue_geometry::Hit;
 use etendue_math::{Point2, Ray, Sampler};
-use etendue_scene::film::{Features, FilmTile, PixelBounds, PixelSample, TileSums};
+use etendue_scene::film::{Features, FilmTile, PixelBounds, PixelSample, FilmSums};
 use etendue_scene::{Film, Scene};
 use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;
@@ -91,7 +91,7 @@ impl CameraPass<'_> {
         radiance: impl Fn(&Tracer<'_>, &mut CameraPath<'_>) -> Sampled + Sync,
     ) -> PassEnd {
         let tiles = film.tiles(TILE_SIZE);
-        let finished: Vec<Option<TileSums>> = tiles
+        let finished: Vec<Option<FilmSums>> = tiles
             .into_par_iter()
             .map(|bounds| {
                 if control.is_cancelled() {
@@ -120,7 +120,7 @@ impl CameraPass<'_> {
         film: &Film,
         bounds: PixelBounds,
         radiance: &(impl Fn(&Tracer<'_>, &mut CameraPath<'_>) -> Sampled + Sync),
-    ) -> TileSums {
+    ) -> FilmSums {
         let mut tile = film.start_tile(bounds);
         for pixel in bounds.pixels() {
             self.add_sample(tracer, pass, pixel, &mut tile, radiance);
