@@ -47,8 +47,8 @@ pub struct Features {
 impl Features {
     /// Channel names in the order of [`to_array`](Self::to_array).
     pub const CHANNELS: [&'static str; 15] = [
-        "Albedo.R", "Albedo.G", "Albedo.B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "Ns.X", "Ns.Y", "Ns.Z", "u",
-        "v", "depth.Z",
+        "Albedo.R", "Albedo.G", "Albedo.B", "P.X", "P.Y", "P.Z", "N.X", "N.Y", "N.Z", "Ns.X", "Ns.Y", "Ns.Z",
+        "u", "v", "depth.Z",
     ];
 
     fn to_array(self) -> [f32; 15] {
@@ -186,7 +186,8 @@ impl Film {
     #[must_use]
     pub fn new(settings: FilmSettings, layers: Vec<String>) -> Self {
         let layout = FilmLayout::new(&settings, layers);
-        let sums = FilmSums::new(settings.crop, layout.channel_names(&settings), settings.luminance_weights());
+        let sums =
+            FilmSums::new(settings.crop, layout.channel_names(&settings), settings.luminance_weights());
         Self { settings, layout, sums }
     }
 

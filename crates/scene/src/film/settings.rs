@@ -150,7 +150,13 @@ impl FilmSettings {
 
     /// Adds a sample's radiance to the bands of its wavelengths: the expectation of a band's sum is the mean of the
     /// spectral radiance over the band.
-    pub(super) fn add_to_buckets(&self, radiance: Sampled, lambda: &Wavelengths, weight: f64, sums: &mut [ExactSum]) {
+    pub(super) fn add_to_buckets(
+        &self,
+        radiance: Sampled,
+        lambda: &Wavelengths,
+        weight: f64,
+        sums: &mut [ExactSum],
+    ) {
         let FilmKind::Spectral { n_buckets, min_nm, max_nm } = self.kind else {
             return;
         };

@@ -84,7 +84,15 @@ impl FilmSums {
         let n = bounds.n_pixels();
         let values = vec![ExactSum::ZERO; n * names.len()];
         let weights = vec![ExactSum::ZERO; n];
-        Self { bounds, names, luminance, weights, values, passes: Vec::new(), faults: SampleFaults::default() }
+        Self {
+            bounds,
+            names,
+            luminance,
+            weights,
+            values,
+            passes: Vec::new(),
+            faults: SampleFaults::default(),
+        }
     }
 
     /// Empty sums of other pixels with the same channels.
@@ -237,13 +245,16 @@ impl FilmSums {
         let weight_prefix = format!("{SUM_PREFIX}weight.");
         let mut names: Vec<String> = Vec::new();
         for channel in &image.channels {
-            let Some(name) = channel.name.strip_prefix(SUM_PREFIX).and_then(|n| n.rsplit_once('.')) else { continue };
+            let Some(name) = channel.name.strip_prefix(SUM_PREFIX).and_then(|n| n.rsplit_once('.')) else {
+                continue;
+            };
             if name.0 != "weight" && !names.iter().any(|known| known == name.0) {
                 names.push(name.0.to_owned());
             }
         }
         // A file may order channels by name; the colour comes first here.
-        names.sort_by_key(|name| CANONICAL_FIRST.iter().position(|first| first == name).unwrap_or(usize::MAX));
+        names
+            .sort_by_key(|name| CANONICAL_FIRST.iter().position(|first| first == name).unwrap_or(usize::MAX));
         if names.len() < CANONICAL_FIRST.len() || bounds.n_pixels() != image.width * image.height {
             return Err(SumsError);
         }
@@ -294,7 +305,10 @@ impl FilmSums {
             let mean_square = values[SQUARE].value() / weight;
             ((mean_square - mean * mean).max(0.0) / (n - 1.0)) as f32
         };
-        Channel { name: "variance.Y".to_owned(), values: self.weights.iter().enumerate().map(variance).collect() }
+        Channel {
+            name: "variance.Y".to_owned(),
+            values: self.weights.iter().enumerate().map(variance).collect(),
+        }
     }
 
     /// Relative standard error of the image: the root mean square over pixels of the standard error of luminance,
@@ -330,11 +344,13 @@ fn split_channel(name: &str, sums: impl Iterator<Item = ExactSum>) -> Vec<Channe
             channel.push(term);
         }
     }
-    let channels = terms.into_iter().enumerate().map(|(index, values)| Channel {
-        name: format!("{SUM_PREFIX}{name}.{index}"),
-        values,
-    });
-    channels.filter(|channel| channel.name.ends_with(".0") || channel.values.iter().any(|v| *v != 0.0)).collect()
+    let channels = terms
+        .into_iter()
+        .enumerate()
+        .map(|(index, values)| Channel { name: format!("{SUM_PREFIX}{name}.{index}"), values });
+    channels
+        .filter(|channel| channel.name.ends_with(".0") || channel.values.iter().any(|v| *v != 0.0))
+        .collect()
 }
 
 fn join_channel<'s>(image: &Image, prefix: &str, targets: impl Iterator<Item = &'s mut ExactSum>) {
