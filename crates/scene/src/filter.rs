@@ -165,9 +165,6 @@ impl Default for Filter {
 }
 
 impl Filter {
-    /// Names of filters in scene files.
-    pub const NAMES: [&'static str; 5] = ["box", "triangle", "gaussian", "mitchell", "sinc"];
-
     /// A filter with radii along x and y in pixels; `None` if a radius or the integral is not positive and finite.
     #[must_use]
     pub fn new(kind: FilterKind, radius: Vector2) -> Option<Self> {
@@ -230,19 +227,6 @@ impl Filter {
         FilterSample { offset, weight: 1.0 }
     }
 
-    /// What scene files may say of the filter named `name`.
-    #[must_use]
-    pub fn parameter_specs(name: &str) -> &'static [ParameterSpec] {
-        match name {
-            "box" => &BOX_PARAMETERS,
-            "triangle" => &TRIANGLE_PARAMETERS,
-            "gaussian" => &GAUSSIAN_PARAMETERS,
-            "mitchell" => &MITCHELL_PARAMETERS,
-            "sinc" => &SINC_PARAMETERS,
-            _ => &[],
-        }
-    }
-
     /// Reads a filter; problems are reported and answered with the default filter.
     pub fn from_parameters(parameters: &mut Parameters<'_, '_>) -> Self {
         let name = parameters.entity().type_name.as_str();
@@ -257,8 +241,10 @@ impl Filter {
             "sinc" => FilterKind::LanczosSinc { tau: parameters.float("tau", 3.0) },
             _ => {
                 let span = parameters.span();
+                parameters.accept_all();
+                let names: Vec<&str> = FILTERS.iter().map(|(name, _)| *name).collect();
                 let error = parameters.diagnostics().error(span, format!("unknown pixel filter \"{name}\""));
-                error.with_help(format!("known are: {}", Self::NAMES.join(", ")));
+                error.with_help(format!("known are: {}", names.join(", ")));
                 return Self::default();
             }
         };
@@ -308,4 +294,13 @@ static SINC_PARAMETERS: [ParameterSpec; 3] = [
         unit: "",
         doc: "cycles that the window passes",
     },
+];
+
+/// Filters with their parameters.
+pub static FILTERS: &[(&str, &[ParameterSpec])] = &[
+    ("box", &BOX_PARAMETERS),
+    ("triangle", &TRIANGLE_PARAMETERS),
+    ("gaussian", &GAUSSIAN_PARAMETERS),
+    ("mitchell", &MITCHELL_PARAMETERS),
+    ("sinc", &SINC_PARAMETERS),
 ];

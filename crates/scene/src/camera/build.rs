@@ -9,9 +9,6 @@ use super::{
     SphericalMapping,
 };
 
-/// Names of cameras in scene files.
-pub const CAMERA_NAMES: [&str; 3] = ["perspective", "orthographic", "spherical"];
-
 const SHUTTER_OPEN: ParameterSpec = ParameterSpec {
     name: "shutteropen",
     kind: "float",
@@ -69,16 +66,12 @@ const MAPPING: ParameterSpec = ParameterSpec {
     doc: "equalarea or equirectangular",
 };
 
-/// What scene files may say of the camera named `name`.
-#[must_use]
-pub fn parameter_specs(name: &str) -> &'static [ParameterSpec] {
-    match name {
-        "perspective" => &[FOV, LENS_RADIUS, FOCAL_DISTANCE, ASPECT, WINDOW, SHUTTER_OPEN, SHUTTER_CLOSE],
-        "orthographic" => &[LENS_RADIUS, FOCAL_DISTANCE, ASPECT, WINDOW, SHUTTER_OPEN, SHUTTER_CLOSE],
-        "spherical" => &[MAPPING, SHUTTER_OPEN, SHUTTER_CLOSE],
-        _ => &[],
-    }
-}
+/// Cameras with their parameters.
+pub static CAMERAS: &[(&str, &[ParameterSpec])] = &[
+    ("perspective", &[FOV, LENS_RADIUS, FOCAL_DISTANCE, ASPECT, WINDOW, SHUTTER_OPEN, SHUTTER_CLOSE]),
+    ("orthographic", &[LENS_RADIUS, FOCAL_DISTANCE, ASPECT, WINDOW, SHUTTER_OPEN, SHUTTER_CLOSE]),
+    ("spherical", &[MAPPING, SHUTTER_OPEN, SHUTTER_CLOSE]),
+];
 
 impl Camera {
     /// Reads a camera for a film of `resolution` pixels of which `crop` (pixels) is rendered; problems are reported.
@@ -110,8 +103,9 @@ impl Camera {
             _ => {
                 if name != "perspective" {
                     let span = parameters.span();
+                    let names: Vec<&str> = CAMERAS.iter().map(|(name, _)| *name).collect();
                     let error = parameters.diagnostics().error(span, format!("unknown camera \"{name}\""));
-                    error.with_help(format!("known are: {}", CAMERA_NAMES.join(", ")));
+                    error.with_help(format!("known are: {}", names.join(", ")));
                 }
                 Projection::Perspective(read_perspective(parameters, size))
             }

@@ -19,7 +19,7 @@ use etendue_math::{AnimatedTransform, Bounds2, Point2, Ray, Transform, lerp};
 
 use differentials::MinimumDifferentials;
 
-pub use build::{CAMERA_NAMES, parameter_specs};
+pub use build::CAMERAS;
 pub use importance::{CameraWiSample, FilmImportance};
 pub use lens::{Lens, circle_of_confusion, field_of_view};
 pub use orthographic::Orthographic;

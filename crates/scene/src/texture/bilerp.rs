@@ -23,9 +23,33 @@ impl<T> Bilerp<T> {
 }
 
 /// Parameters of the texture `bilerp`, besides those of its mapping.
-pub const PARAMETERS: &[ParameterSpec] = &[
-    ParameterSpec { name: "v00", kind: "float or spectrum", default: "0", unit: "", doc: "value at s = 0, t = 0" },
-    ParameterSpec { name: "v01", kind: "float or spectrum", default: "1", unit: "", doc: "value at s = 0, t = 1" },
-    ParameterSpec { name: "v10", kind: "float or spectrum", default: "0", unit: "", doc: "value at s = 1, t = 0" },
-    ParameterSpec { name: "v11", kind: "float or spectrum", default: "1", unit: "", doc: "value at s = 1, t = 1" },
+pub(super) const PARAMETERS: &[ParameterSpec] = &[
+    ParameterSpec {
+        name: "v00",
+        kind: "float or spectrum",
+        default: "0",
+        unit: "",
+        doc: "value at s = 0, t = 0",
+    },
+    ParameterSpec {
+        name: "v01",
+        kind: "float or spectrum",
+        default: "1",
+        unit: "",
+        doc: "value at s = 0, t = 1",
+    },
+    ParameterSpec {
+        name: "v10",
+        kind: "float or spectrum",
+        default: "0",
+        unit: "",
+        doc: "value at s = 1, t = 0",
+    },
+    ParameterSpec {
+        name: "v11",
+        kind: "float or spectrum",
+        default: "1",
+        unit: "",
+        doc: "value at s = 1, t = 1",
+    },
 ];

@@ -65,7 +65,7 @@ impl<T> Checkerboard<T> {
 }
 
 /// Parameters of the texture `checkerboard`, besides those of its mapping.
-pub const PARAMETERS: &[ParameterSpec] = &[
+pub(super) const PARAMETERS: &[ParameterSpec] = &[
     ParameterSpec { name: "dimension", kind: "integer", default: "2", unit: "", doc: "2: squares; 3: cubes" },
     ParameterSpec { name: "tex1", kind: "texture", default: "1", unit: "", doc: "in the cell at the origin" },
     ParameterSpec { name: "tex2", kind: "texture", default: "0", unit: "", doc: "in its neighbours" },

@@ -3,5 +3,5 @@
 use crate::parameters::ParameterSpec;
 
 /// Parameters of the texture `constant`.
-pub const PARAMETERS: &[ParameterSpec] =
+pub(super) const PARAMETERS: &[ParameterSpec] =
     &[ParameterSpec { name: "value", kind: "float or spectrum", default: "1", unit: "", doc: "the value" }];

@@ -27,10 +27,8 @@ fn is_inside(st: Point2) -> bool {
         return false;
     }
     let max_shift = 0.5 - RADIUS;
-    let centre = Point2::new(
-        s + max_shift * noise2(s + 1.5, t + 2.8),
-        t + max_shift * noise2(s + 4.5, t + 9.8),
-    );
+    let centre =
+        Point2::new(s + max_shift * noise2(s + 1.5, t + 2.8), t + max_shift * noise2(s + 4.5, t + 9.8));
     (st - centre).length_squared() < RADIUS * RADIUS
 }
 
@@ -43,7 +41,7 @@ impl<T: Copy> Dots<T> {
 }
 
 /// Parameters of the texture `dots`, besides those of its mapping.
-pub const PARAMETERS: &[ParameterSpec] = &[
+pub(super) const PARAMETERS: &[ParameterSpec] = &[
     ParameterSpec { name: "inside", kind: "texture", default: "1", unit: "", doc: "within dots" },
     ParameterSpec { name: "outside", kind: "texture", default: "0", unit: "", doc: "between dots" },
 ];

@@ -65,8 +65,14 @@ impl Windy {
 }
 
 /// Parameters of the textures `fbm` and `wrinkled`.
-pub const PARAMETERS: &[ParameterSpec] = &[
-    ParameterSpec { name: "octaves", kind: "integer", default: "8", unit: "", doc: "number of octaves of noise" },
+pub(super) const PARAMETERS: &[ParameterSpec] = &[
+    ParameterSpec {
+        name: "octaves",
+        kind: "integer",
+        default: "8",
+        unit: "",
+        doc: "number of octaves of noise",
+    },
     ParameterSpec {
         name: "roughness",
         kind: "float",
@@ -77,4 +83,4 @@ pub const PARAMETERS: &[ParameterSpec] = &[
 ];
 
 /// Parameters of the texture `windy`: none.
-pub const WINDY_PARAMETERS: &[ParameterSpec] = &[];
+pub(super) const WINDY_PARAMETERS: &[ParameterSpec] = &[];

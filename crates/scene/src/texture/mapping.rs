@@ -107,8 +107,11 @@ fn cylindrical(c: &Coordinates3) -> Coordinates2 {
     let p = c.p;
     let rho_squared = p.x * p.x + p.y * p.y;
     let st = Point2::new((PI + p.y.atan2(p.x)) / TAU, p.z);
-    let dphi =
-        if rho_squared > 0.0 { Vector3::new(-p.y, p.x, 0.0) / (TAU * rho_squared) } else { Vector3::default() };
+    let dphi = if rho_squared > 0.0 {
+        Vector3::new(-p.y, p.x, 0.0) / (TAU * rho_squared)
+    } else {
+        Vector3::default()
+    };
     from_gradients(st, dphi, Vector3::new(0.0, 0.0, 1.0), c)
 }
 
@@ -122,10 +125,34 @@ impl Mapping2 {
             unit: "",
             doc: "uv, spherical, cylindrical or planar",
         },
-        ParameterSpec { name: "uscale", kind: "float", default: "1", unit: "", doc: "uv: repetitions along u" },
-        ParameterSpec { name: "vscale", kind: "float", default: "1", unit: "", doc: "uv: repetitions along v" },
-        ParameterSpec { name: "udelta", kind: "float", default: "0", unit: "", doc: "uv, planar: shift along u" },
-        ParameterSpec { name: "vdelta", kind: "float", default: "0", unit: "", doc: "uv, planar: shift along v" },
+        ParameterSpec {
+            name: "uscale",
+            kind: "float",
+            default: "1",
+            unit: "",
+            doc: "uv: repetitions along u",
+        },
+        ParameterSpec {
+            name: "vscale",
+            kind: "float",
+            default: "1",
+            unit: "",
+            doc: "uv: repetitions along v",
+        },
+        ParameterSpec {
+            name: "udelta",
+            kind: "float",
+            default: "0",
+            unit: "",
+            doc: "uv, planar: shift along u",
+        },
+        ParameterSpec {
+            name: "vdelta",
+            kind: "float",
+            default: "0",
+            unit: "",
+            doc: "uv, planar: shift along v",
+        },
         ParameterSpec {
             name: "v1",
             kind: "vector3",

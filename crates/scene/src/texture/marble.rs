@@ -55,8 +55,14 @@ impl Marble {
 }
 
 /// Parameters of the texture `marble`.
-pub const PARAMETERS: &[ParameterSpec] = &[
-    ParameterSpec { name: "octaves", kind: "integer", default: "8", unit: "", doc: "number of octaves of noise" },
+pub(super) const PARAMETERS: &[ParameterSpec] = &[
+    ParameterSpec {
+        name: "octaves",
+        kind: "integer",
+        default: "8",
+        unit: "",
+        doc: "number of octaves of noise",
+    },
     ParameterSpec {
         name: "roughness",
         kind: "float",
@@ -65,5 +71,11 @@ pub const PARAMETERS: &[ParameterSpec] = &[
         doc: "factor of the amplitude from one octave to the next finer one",
     },
     ParameterSpec { name: "scale", kind: "float", default: "1", unit: "", doc: "factor of the position" },
-    ParameterSpec { name: "variation", kind: "float", default: "0.2", unit: "", doc: "strength of the bending" },
+    ParameterSpec {
+        name: "variation",
+        kind: "float",
+        default: "0.2",
+        unit: "",
+        doc: "strength of the bending",
+    },
 ];

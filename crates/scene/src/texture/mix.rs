@@ -37,15 +37,39 @@ impl<T> DirectionMix<T> {
 }
 
 /// Parameters of the texture `mix`.
-pub const PARAMETERS: &[ParameterSpec] = &[
+pub(super) const PARAMETERS: &[ParameterSpec] = &[
     ParameterSpec { name: "tex1", kind: "texture", default: "0", unit: "", doc: "where the amount is 0" },
     ParameterSpec { name: "tex2", kind: "texture", default: "1", unit: "", doc: "where the amount is 1" },
-    ParameterSpec { name: "amount", kind: "float texture", default: "0.5", unit: "", doc: "the share of tex2" },
+    ParameterSpec {
+        name: "amount",
+        kind: "float texture",
+        default: "0.5",
+        unit: "",
+        doc: "the share of tex2",
+    },
 ];
 
 /// Parameters of the texture `directionmix`.
-pub const DIRECTION_PARAMETERS: &[ParameterSpec] = &[
-    ParameterSpec { name: "tex1", kind: "texture", default: "0", unit: "", doc: "where the normal is along dir" },
-    ParameterSpec { name: "tex2", kind: "texture", default: "1", unit: "", doc: "where the normal is across dir" },
-    ParameterSpec { name: "dir", kind: "vector3", default: "0 1 0", unit: "", doc: "direction in texture space" },
+pub(super) const DIRECTION_PARAMETERS: &[ParameterSpec] = &[
+    ParameterSpec {
+        name: "tex1",
+        kind: "texture",
+        default: "0",
+        unit: "",
+        doc: "where the normal is along dir",
+    },
+    ParameterSpec {
+        name: "tex2",
+        kind: "texture",
+        default: "1",
+        unit: "",
+        doc: "where the normal is across dir",
+    },
+    ParameterSpec {
+        name: "dir",
+        kind: "vector3",
+        default: "0 1 0",
+        unit: "",
+        doc: "direction in texture space",
+    },
 ];

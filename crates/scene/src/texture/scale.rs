@@ -14,7 +14,7 @@ pub struct Scale<T> {
 }
 
 /// Parameters of the texture `scale`.
-pub const PARAMETERS: &[ParameterSpec] = &[
+pub(super) const PARAMETERS: &[ParameterSpec] = &[
     ParameterSpec { name: "tex", kind: "texture", default: "1", unit: "", doc: "what is scaled" },
     ParameterSpec { name: "scale", kind: "float texture", default: "1", unit: "", doc: "the factor" },
 ];

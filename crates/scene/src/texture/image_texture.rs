@@ -1,0 +1,107 @@
+//! The texture `imagemap`: a picture laid onto a surface.
+
+use etendue_spectrum::{Sampled, SpectrumTables, Wavelengths};
+
+use crate::parameters::{ParameterSpec, SpectrumRole};
+
+use super::image_map::ImageMap;
+use super::uplift::Uplift;
+use super::{Mapping2, TextureContext};
+
+/// Index of a picture in the arena of [`Textures`](super::Textures).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ImageId(pub u32);
+
+/// A picture on a surface; numbers come from its first channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImageTexture {
+    /// Texture coordinates.
+    pub mapping: Mapping2,
+    /// The picture.
+    pub image: ImageId,
+    /// Factor of its values.
+    pub scale: f32,
+    /// Yields `1 - value` after scaling.
+    pub invert: bool,
+}
+
+impl ImageTexture {
+    /// The number at a point.
+    #[must_use]
+    pub fn eval_float(&self, image: &ImageMap, ctx: &TextureContext) -> f32 {
+        let [value] = image.lookup::<1>(&self.mapping.map(ctx));
+        let value = self.scale * value;
+        if self.invert { (1.0 - value).max(0.0) } else { value }
+    }
+
+    /// The linear colour at a point, in the primaries of the picture, not negative.
+    #[must_use]
+    pub fn eval_rgb(&self, image: &ImageMap, ctx: &TextureContext) -> [f32; 3] {
+        let rgb = image.lookup::<3>(&self.mapping.map(ctx)).map(|c| self.scale * c);
+        rgb.map(|c| if self.invert { (1.0 - c).max(0.0) } else { c.max(0.0) })
+    }
+}
+
+/// A picture that yields spectra.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpectrumImageTexture {
+    /// The picture.
+    pub texture: ImageTexture,
+    /// How its colours become spectra.
+    pub uplift: Uplift,
+}
+
+impl SpectrumImageTexture {
+    /// The spectrum at a point.
+    #[must_use]
+    pub fn eval(
+        &self,
+        image: &ImageMap,
+        tables: &SpectrumTables,
+        ctx: &TextureContext,
+        lambda: &Wavelengths,
+    ) -> Sampled {
+        self.uplift.spectrum(self.texture.eval_rgb(image, ctx)).sample(tables, lambda)
+    }
+
+    /// How its colours are read.
+    #[must_use]
+    pub const fn role(&self) -> SpectrumRole {
+        self.uplift.role
+    }
+}
+
+/// Parameters of the texture `imagemap`, besides those of its mapping.
+pub(super) const PARAMETERS: &[ParameterSpec] = &[
+    ParameterSpec { name: "filename", kind: "string", default: "", unit: "", doc: "the picture" },
+    ParameterSpec {
+        name: "filter",
+        kind: "string",
+        default: "bilinear",
+        unit: "",
+        doc: "point, bilinear, trilinear or EWA (elliptically weighted average)",
+    },
+    ParameterSpec {
+        name: "wrap",
+        kind: "string",
+        default: "repeat",
+        unit: "",
+        doc: "beyond the borders: repeat, black, clamp or octahedralsphere",
+    },
+    ParameterSpec {
+        name: "maxanisotropy",
+        kind: "float",
+        default: "8",
+        unit: "",
+        doc: "EWA: largest ratio of the axes of the footprint",
+    },
+    ParameterSpec { name: "scale", kind: "float", default: "1", unit: "", doc: "factor of all values" },
+    ParameterSpec { name: "invert", kind: "bool", default: "false", unit: "", doc: "yield 1 - value" },
+    ParameterSpec {
+        name: "encoding",
+        kind: "string",
+        default: "sRGB",
+        unit: "",
+        doc: "of integer pictures: sRGB, linear or gamma followed by the exponent",
+    },
+];
