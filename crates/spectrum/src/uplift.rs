@@ -5,16 +5,22 @@
 //! Hanika 2019, "A Low-Dimensional Function Space for Efficient Spectral Upsampling", doi:10.1111/cgf.13626, who measure
 //! the residual in CIELAB; ours is in linear RGB, which agrees wherever the colour is reached).
 //!
+//! A colour that no such reflectance has is desaturated towards the grey of equal luminance until one has it.
+//!
 //! The iteration runs on a grid of 5 nm, whose weights integrate piecewise linear functions exactly, and ends on 1 nm.
 
 use crate::cie::color_matching;
-use crate::matrix::{Matrix3, solve, transform};
+use crate::matrix::{Matrix3, invert, solve, transform};
 use crate::{N_DENSE, SigmoidPolynomial};
 
 /// Spacing of the coarse grid in nm; divides 470.
 const COARSE_NM: usize = 5;
 /// Largest component of the residual at which a fit is done.
 const TOLERANCE: f64 = 1e-7;
+/// Largest component of the residual at which a colour counts as reached.
+const REACHED: f64 = 2e-4;
+/// Halvings of the interval when a colour is out of reach: saturation to 1/256.
+const BISECTIONS: usize = 8;
 /// Components nearer than this to 0 or 1 need sigmoids beyond any use.
 const MARGIN: f64 = 1e-6;
 
@@ -23,6 +29,8 @@ const MARGIN: f64 = 1e-6;
 pub(crate) struct Uplift {
     coarse: Vec<Weight>,
     fine: Vec<Weight>,
+    /// Luminance of R, G and B.
+    luminance: [f64; 3],
 }
 
 /// One term of the integrals.
@@ -59,7 +67,7 @@ impl Uplift {
         for weight in &mut fine {
             weight.rgb = std::array::from_fn(|c| weight.rgb[c] / white[c]);
         }
-        Self { coarse: coarsen(&fine), fine }
+        Self { coarse: coarsen(&fine), fine, luminance: invert(rgb_from_xyz)[1] }
     }
 
     /// The reflectance of a linear RGB, whose components are limited to [0, 1].
@@ -70,9 +78,43 @@ impl Uplift {
         }
         let target = rgb.map(|c| f64::from(c).clamp(MARGIN, 1.0 - MARGIN));
         let start = constant_start(target);
+        let step = match self.solve(target, start) {
+            step if step.is_reached() => step,
+            _ => self.solve_desaturated(target),
+        };
+        in_nanometres(step.coefficients)
+    }
+
+    /// Iterates on the coarse grid, then on the fine one.
+    fn solve(&self, target: [f64; 3], start: [f64; 3]) -> Step {
         let coarse = levenberg_marquardt(&self.coarse, target, start, 60);
-        let fine = levenberg_marquardt(&self.fine, target, coarse, 8);
-        in_nanometres(fine)
+        levenberg_marquardt(&self.fine, target, coarse.coefficients, 8)
+    }
+
+    /// The fit of the most saturated colour that is reached on the way from the grey of equal luminance to the target.
+    fn solve_desaturated(&self, target: [f64; 3]) -> Step {
+        let luminance = (0..3).map(|c| self.luminance[c] * target[c]).sum::<f64>();
+        let grey = luminance.clamp(MARGIN, 1.0 - MARGIN);
+        let mut best = levenberg_marquardt(&self.fine, [grey; 3], constant_start([grey; 3]), 60);
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            let colour = target.map(|c| grey + middle * (c - grey));
+            let step = self.solve(colour, best.coefficients);
+            if step.is_reached() {
+                (low, best) = (middle, step);
+            } else {
+                high = middle;
+            }
+        }
+        best
+    }
+}
+
+impl Step {
+    /// Whether the colour is met well enough.
+    fn is_reached(&self) -> bool {
+        self.residual.iter().all(|r| r.abs() < REACHED)
     }
 }
 
@@ -99,7 +141,7 @@ fn constant_start(target: [f64; 3]) -> [f64; 3] {
 }
 
 /// Reduces the squared residual from a start until it is negligible or stops falling.
-fn levenberg_marquardt(weights: &[Weight], target: [f64; 3], start: [f64; 3], max_steps: usize) -> [f64; 3] {
+fn levenberg_marquardt(weights: &[Weight], target: [f64; 3], start: [f64; 3], max_steps: usize) -> Step {
     let mut current = evaluate(weights, target, start);
     let mut damping = 1e-4;
     for _ in 0..max_steps {
@@ -120,7 +162,7 @@ fn levenberg_marquardt(weights: &[Weight], target: [f64; 3], start: [f64; 3], ma
             }
         }
     }
-    current.coefficients
+    current
 }
 
 /// The residual and its derivatives at given coefficients.
