@@ -14,7 +14,7 @@ use crate::{Point2, Rng, Vector3};
 /// Relative error allowed to the integral of a density in single precision.
 const INTEGRAL_TOLERANCE: f64 = 2e-3;
 /// A cell is split if the pilot batch would put more than this share of all samples there.
-const LARGEST_SHARE: f64 = 1.0 / 400.0;
+const LARGEST_SHARE: f64 = 1.0 / 200.0;
 /// Fewest samples expected in a cell.
 const MIN_EXPECTED: f64 = 5.0;
 
@@ -33,15 +33,15 @@ pub fn sphere_chi_square(
     // z and phi are coordinates of equal area.
     let domain = Grid {
         domain: Rectangle { x0: -1.0, x1: 1.0, y0: 0.0, y1: TAU },
-        nx: 16,
+        nx: 8,
         ny: 16,
         // Cells smaller than the rounding of z near the poles would count rounding.
-        max_depth: 12,
+        finest: [2e-6, 1e-4],
     };
     let draw = |rng: &mut Rng| {
         sample(rng).map(|w| {
             let phi = f64::from(w.y).atan2(f64::from(w.x));
-            (f64::from(w.z).clamp(-1.0, 1.0), if phi < 0.0 { phi + TAU } else { phi })
+            [f64::from(w.z).clamp(-1.0, 1.0), if phi < 0.0 { phi + TAU } else { phi }]
         })
     };
     chi_square_cells(samples, seed, draw, |z, phi| f64::from(pdf(direction(z, phi))), &domain, significance)
@@ -58,9 +58,13 @@ pub fn square_chi_square(
     pdf: impl Fn(Point2) -> f32,
     significance: f64,
 ) -> Result<(), String> {
-    let domain =
-        Grid { domain: Rectangle { x0: 0.0, x1: 1.0, y0: 0.0, y1: 1.0 }, nx: 16, ny: 16, max_depth: 10 };
-    let draw = |rng: &mut Rng| sample(rng).map(|p| (f64::from(p.x), f64::from(p.y)));
+    let domain = Grid {
+        domain: Rectangle { x0: 0.0, x1: 1.0, y0: 0.0, y1: 1.0 },
+        nx: 10,
+        ny: 10,
+        finest: [1e-5, 1e-5],
+    };
+    let draw = |rng: &mut Rng| sample(rng).map(|p| [f64::from(p.x), f64::from(p.y)]);
     let density = |x: f64, y: f64| f64::from(pdf(Point2::new(x as f32, y as f32)));
     chi_square_cells(samples, seed, draw, density, &domain, significance)
 }
@@ -81,17 +85,21 @@ pub fn interval_chi_square(
         domain: Rectangle { x0: range[0], x1: range[1], y0: 0.0, y1: 1.0 },
         nx: 64,
         ny: 1,
-        max_depth: 0,
+        finest: [1e-6 * (range[1] - range[0]), 1.0],
     };
-    let draw = |rng: &mut Rng| sample(rng).map(|x| (f64::from(x), 0.5));
+    let draw = |rng: &mut Rng| sample(rng).map(|x| [f64::from(x), 0.5]);
     chi_square_cells(samples, seed, draw, |x, _| f64::from(pdf(x as f32)), &domain, significance)
 }
 
 /// Integral over the sphere of a function of direction, per steradian, to about `tolerance`.
 #[must_use]
 pub fn integrate_sphere(f: impl Fn(Vector3) -> f64, tolerance: f64) -> f64 {
-    let grid =
-        Grid { domain: Rectangle { x0: -1.0, x1: 1.0, y0: 0.0, y1: TAU }, nx: 16, ny: 16, max_depth: 0 };
+    let grid = Grid {
+        domain: Rectangle { x0: -1.0, x1: 1.0, y0: 0.0, y1: TAU },
+        nx: 16,
+        ny: 16,
+        finest: [0.0, 0.0],
+    };
     let f = |z: f64, phi: f64| f(direction(z, phi));
     grid.cells().into_iter().map(|cell| integrate_rectangle(&f, cell, tolerance / 16.0, 10)).sum()
 }
@@ -111,8 +119,8 @@ pub struct Grid {
     pub nx: usize,
     /// Coarse cells in y.
     pub ny: usize,
-    /// How often a coarse cell may be split in four.
-    pub max_depth: u32,
+    /// Cells are not cut below this extent in x and y.
+    pub finest: [f64; 2],
 }
 
 impl Grid {
@@ -128,7 +136,7 @@ impl Grid {
     }
 
     /// Index of the coarse cell of a point; points on the border belong inside.
-    fn index(&self, (x, y): (f64, f64)) -> Option<usize> {
+    fn index(&self, [x, y]: [f64; 2]) -> Option<usize> {
         let d = self.domain;
         if !(x >= d.x0 && x <= d.x1 && y >= d.y0 && y <= d.y1) {
             return None;
@@ -139,38 +147,86 @@ impl Grid {
     }
 }
 
-/// A cell of the quadtree: its expected share and where its samples are.
-struct Leaf {
-    cell: Rectangle,
-    observed: Vec<(f64, f64)>,
+/// A cell with the samples that fell into it.
+struct Cell {
+    bounds: Rectangle,
+    /// Decide how cells are cut.
+    pilot: Vec<[f64; 2]>,
+    /// Are compared with the density.
+    counted: Vec<[f64; 2]>,
 }
 
-/// Splits cells until no pilot share is too large; gives every leaf the points that fall into it.
-fn split(
-    cell: Rectangle,
-    pilot: Vec<(f64, f64)>,
-    counted: Vec<(f64, f64)>,
-    limit: usize,
-    depth: u32,
-    leaves: &mut Vec<Leaf>,
-) {
-    if depth == 0 || pilot.len() <= limit {
-        leaves.push(Leaf { cell, observed: counted });
-        return;
+/// The two halves of a cell across an axis and the line between them.
+fn halves(bounds: Rectangle, axis: usize) -> (f64, [Rectangle; 2]) {
+    if axis == 0 {
+        let x = 0.5 * (bounds.x0 + bounds.x1);
+        (x, [Rectangle { x1: x, ..bounds }, Rectangle { x0: x, ..bounds }])
+    } else {
+        let y = 0.5 * (bounds.y0 + bounds.y1);
+        (y, [Rectangle { y1: y, ..bounds }, Rectangle { y0: y, ..bounds }])
     }
-    let (mx, my) = (0.5 * (cell.x0 + cell.x1), 0.5 * (cell.y0 + cell.y1));
-    let quarter = |(x, y): &(f64, f64)| 2 * usize::from(*y >= my) + usize::from(*x >= mx);
-    let deal = |points: Vec<(f64, f64)>| {
-        let mut parts: [Vec<(f64, f64)>; 4] = Default::default();
-        for point in points {
-            parts[quarter(&point)].push(point);
-        }
-        parts
+}
+
+/// The axis across which the points are spread most unevenly, of those along which the cell may still be cut, and how
+/// uneven they are: the largest of the differences between halves, and between the diagonal pairs of quarters, in standard
+/// deviations of an even spread.
+fn uneven_axis(bounds: Rectangle, points: &[[f64; 2]], finest: [f64; 2]) -> Option<(usize, f64)> {
+    let extent = [bounds.x1 - bounds.x0, bounds.y1 - bounds.y0];
+    let middle = [halves(bounds, 0).0, halves(bounds, 1).0];
+    let unevenness = |upper: &dyn Fn(&[f64; 2]) -> bool| {
+        let above = points.iter().filter(|point| upper(point)).count() as f64;
+        let n = points.len() as f64;
+        (2.0 * above - n).abs() / n.max(1.0).sqrt()
     };
-    let quarters = cell.quarters();
-    for ((cell, pilot), counted) in quarters.into_iter().zip(deal(pilot)).zip(deal(counted)) {
-        split(cell, pilot, counted, limit, depth - 1, leaves);
+    let diagonal = unevenness(&|p| (p[0] >= middle[0]) == (p[1] >= middle[1]));
+    (0..2)
+        .filter(|axis| extent[*axis] > 2.0 * finest[*axis])
+        .map(|axis| (axis, unevenness(&|p| p[axis] >= middle[axis])))
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(axis, difference)| (axis, difference.max(diagonal)))
+}
+
+/// Cuts a cell until no pilot share is too large.
+fn cut(cell: Cell, limit: usize, finest: [f64; 2], leaves: &mut Vec<Cell>) {
+    let axis = uneven_axis(cell.bounds, &cell.pilot, finest).filter(|_| cell.pilot.len() > limit);
+    let Some((axis, _)) = axis else {
+        leaves.push(cell);
+        return;
+    };
+    let (middle, [low, high]) = halves(cell.bounds, axis);
+    let deal = |points: Vec<[f64; 2]>| -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
+        points.into_iter().partition(|point| point[axis] < middle)
+    };
+    let (pilot_low, pilot_high) = deal(cell.pilot);
+    let (counted_low, counted_high) = deal(cell.counted);
+    cut(Cell { bounds: low, pilot: pilot_low, counted: counted_low }, limit, finest, leaves);
+    cut(Cell { bounds: high, pilot: pilot_high, counted: counted_high }, limit, finest, leaves);
+}
+
+/// Integral of the density over a cell, cut where the samples are uneven, so that no peak with samples is missed.
+fn share(
+    density: &impl Fn(f64, f64) -> f64,
+    bounds: Rectangle,
+    points: &[[f64; 2]],
+    finest: [f64; 2],
+    tolerance: f64,
+) -> f64 {
+    const FEW: usize = 16;
+    // An even spread is less even than this about once in 10^4 cells.
+    const UNEVEN: f64 = 4.0;
+    let uneven = uneven_axis(bounds, points, finest);
+    if uneven.is_none_or(|(_, unevenness)| points.len() <= FEW || unevenness <= UNEVEN) {
+        let integral = integrate_rectangle(density, bounds, tolerance, 8);
+        if integral > 0.0 || points.is_empty() {
+            return integral;
+        }
     }
+    // A peak, or samples in a sliver of the support that the rule has missed.
+    let Some((axis, _)) = uneven else { return 0.0 };
+    let (middle, [low, high]) = halves(bounds, axis);
+    let (below, above): (Vec<_>, Vec<_>) = points.iter().copied().partition(|point| point[axis] < middle);
+    share(density, low, &below, finest, 0.7 * tolerance)
+        + share(density, high, &above, finest, 0.7 * tolerance)
 }
 
 /// Tests samples of a domain against a density over it: see [`sphere_chi_square`].
@@ -180,7 +236,7 @@ fn split(
 pub fn chi_square_cells(
     samples: usize,
     seed: u64,
-    mut draw: impl FnMut(&mut Rng) -> Option<(f64, f64)>,
+    mut draw: impl FnMut(&mut Rng) -> Option<[f64; 2]>,
     density: impl Fn(f64, f64) -> f64,
     grid: &Grid,
     significance: f64,
@@ -191,12 +247,14 @@ pub fn chi_square_cells(
     let (counted, n_none) = batch(samples, grid, || draw(&mut rng))?;
     let limit = ((n_pilot as f64 * LARGEST_SHARE) as usize).max(1);
     let mut leaves = Vec::new();
-    for ((cell, pilot), counted) in grid.cells().into_iter().zip(pilot).zip(counted) {
-        split(cell, pilot, counted, limit, grid.max_depth, &mut leaves);
+    for ((bounds, pilot), counted) in grid.cells().into_iter().zip(pilot).zip(counted) {
+        cut(Cell { bounds, pilot, counted }, limit, grid.finest, &mut leaves);
     }
     let tolerance = 2e-3 * LARGEST_SHARE;
-    let shares: Vec<f64> =
-        leaves.iter().map(|leaf| integrate_rectangle(&density, leaf.cell, tolerance, 8)).collect();
+    let shares: Vec<f64> = leaves
+        .iter()
+        .map(|leaf| share(&density, leaf.bounds, &leaf.counted, grid.finest, tolerance))
+        .collect();
     let integral: f64 = shares.iter().sum();
     check_mass(samples, n_none, integral, significance)?;
     // Given that samples are made at all, do they fall where they should?
@@ -205,7 +263,7 @@ pub fn chi_square_cells(
         return Ok(());
     }
     let expected: Vec<f64> = shares.iter().map(|share| share / integral * n_made).collect();
-    let observed: Vec<f64> = leaves.iter().map(|leaf| leaf.observed.len() as f64).collect();
+    let observed: Vec<f64> = leaves.iter().map(|leaf| leaf.counted.len() as f64).collect();
     chi_square_test(&observed, &expected, MIN_EXPECTED, 0.5 * significance).map(|_| ())
 }
 
@@ -214,8 +272,8 @@ pub fn chi_square_cells(
 fn batch(
     n: usize,
     grid: &Grid,
-    mut draw: impl FnMut() -> Option<(f64, f64)>,
-) -> Result<(Vec<Vec<(f64, f64)>>, usize), String> {
+    mut draw: impl FnMut() -> Option<[f64; 2]>,
+) -> Result<(Vec<Vec<[f64; 2]>>, usize), String> {
     let mut cells = vec![Vec::new(); grid.nx * grid.ny];
     let mut n_none = 0;
     for _ in 0..n {

@@ -96,7 +96,7 @@ pub fn sample_spherical_triangle(v: [Point3; 3], p: Point3, u: Point2) -> Option
     let (s, c) = (area - t.alpha).sin_cos();
     // The cut C' on the arc from A to C that leaves the area, by its distance from A.  [Arvo, section 3]
     let (k_u, k_v) = (c - cos_alpha, s + sin_alpha * t.a.dot(t.b));
-    let numerator = k_v + (k_v * c - k_u * s) * cos_alpha;
+    let numerator = k_v - (k_v * c - k_u * s) * cos_alpha;
     let denominator = (k_v * s + k_u * c) * sin_alpha;
     let cos_b = (-numerator / denominator).clamp(-1.0, 1.0);
     let cos_b = if cos_b.is_nan() { 1.0 } else { cos_b };
