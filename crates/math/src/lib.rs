@@ -28,5 +28,5 @@ pub use piecewise::{PiecewiseConstant1, PiecewiseConstant2, WindowedPiecewiseCon
 pub use ray::{Ray, offset_ray_origin};
 pub use rng::{ONE_MINUS_EPSILON, Rng, hash64, mix64, unit_f32, unit_f64};
 pub use sampler::{Sampler, SamplerKind, SamplerSettings};
-pub use transform::{AnimatedTransform, Transform};
+pub use transform::{AnimatedTransform, Motion, Transform};
 pub use vector::{Normal3, Point2, Point3, Vector2, Vector3};

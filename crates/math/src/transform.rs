@@ -230,7 +230,7 @@ impl AnimatedTransform {
         self.start != self.end
     }
 
-    /// The transform at a time in seconds.
+    /// The transform at a time in seconds. Decomposes both ends each time: see [`motion`](Self::motion).
     #[must_use]
     pub fn at(&self, time: f32) -> Transform {
         if !self.is_animated() || time <= self.start_time {
@@ -239,17 +239,23 @@ impl AnimatedTransform {
         if time >= self.end_time {
             return self.end;
         }
-        let t = f64::from((time - self.start_time) / (self.end_time - self.start_time));
+        self.motion().at(time)
+    }
+
+    /// The same motion with both ends decomposed, for many evaluations.
+    #[must_use]
+    pub fn motion(&self) -> Motion {
         let (translation0, rotation0, stretch0) = decompose(matrix(self.start.m));
         let (translation1, mut rotation1, stretch1) = decompose(matrix(self.end.m));
         if rotation0.dot(rotation1) < 0.0 {
             rotation1 = -rotation1;
         }
-        let rotation = DMat3::from_quat(rotation0.slerp(rotation1, t));
-        let stretch = stretch0 * (1.0 - t) + stretch1 * t;
-        let linear = rotation * stretch;
-        let translation = translation0.lerp(translation1, t);
-        Transform::from_glam(DMat4::from_mat3_translation(linear, translation))
+        Motion {
+            ends: *self,
+            translation: [translation0, translation1],
+            rotation: [rotation0, rotation1],
+            stretch: [stretch0, stretch1],
+        }
     }
 
     /// A box that holds `bounds` at every time: the union over densely sampled times, widened by the largest
@@ -260,9 +266,10 @@ impl AnimatedTransform {
             return self.start.bounds(bounds);
         }
         const STEPS: u32 = 64;
+        let motion = self.motion();
         let corners_at = |step: u32| {
             let t = step as f32 / STEPS as f32;
-            let transform = self.at(self.start_time + t * (self.end_time - self.start_time));
+            let transform = motion.at(self.start_time + t * (self.end_time - self.start_time));
             bounds.corners().map(|p| transform.point(p))
         };
         let mut previous = corners_at(0);
@@ -278,6 +285,34 @@ impl AnimatedTransform {
         }
         let margin = Vector3::splat(largest_step / 2.0);
         Bounds3 { min: result.min - margin, max: result.max + margin }
+    }
+}
+
+/// An [`AnimatedTransform`] whose ends are decomposed into translation, rotation and stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    ends: AnimatedTransform,
+    translation: [DVec3; 2],
+    rotation: [DQuat; 2],
+    stretch: [DMat3; 2],
+}
+
+impl Motion {
+    /// The transform at a time in seconds.
+    #[must_use]
+    pub fn at(&self, time: f32) -> Transform {
+        let ends = &self.ends;
+        if time <= ends.start_time || !ends.is_animated() {
+            return ends.start;
+        }
+        if time >= ends.end_time {
+            return ends.end;
+        }
+        let t = f64::from((time - ends.start_time) / (ends.end_time - ends.start_time));
+        let rotation = DMat3::from_quat(self.rotation[0].slerp(self.rotation[1], t));
+        let linear = rotation * (self.stretch[0] * (1.0 - t) + self.stretch[1] * t);
+        let translation = self.translation[0].lerp(self.translation[1], t);
+        Transform::from_glam(DMat4::from_mat3_translation(linear, translation))
     }
 }
 
