@@ -1,51 +1,109 @@
 //! From shapes to [`Geometry`].
-use crate::{
-    geometry::Geometry,
-    hit::{GeometryId, ObjectId},
-    shape::Shape,
-};
+
 use etendue_math::{AnimatedTransform, Transform};
+
+use crate::bvh::{self, BuildPrimitive, Bvh, INSTANCE, PrimitiveRef};
+use crate::geometry::Geometry;
+use crate::hit::{GeometryId, ObjectId};
+use crate::instance::Instance;
+use crate::shape::Shape;
+use crate::shape::entity::Entity;
+
+/// Group index of the world; object `i` is group `i + 1`.
+pub(crate) const WORLD: u32 = 0;
+
 /// Collects shapes, objects and instances.
 #[derive(Debug, Default)]
-pub struct GeometryBuilder {}
+pub struct GeometryBuilder {
+    entities: Vec<Entity>,
+    /// Group of each entity.
+    groups: Vec<u32>,
+    n_objects: u32,
+    instances: Vec<(ObjectId, AnimatedTransform)>,
+}
+
 impl GeometryBuilder {
     /// Nothing yet.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
+
     /// Adds a shape to the world. `reverse_orientation` turns its normals over.
     ///
-    /// A moving shape becomes an instance of its own, so it cannot be a light source.
+    /// A moving shape becomes an instance of its own, so it cannot be a light source. Meshes must be valid
+    /// ([`Shape::validate`]); triangles with corners that are not finite are left out.
     pub fn add(
         &mut self,
-        _shape: Shape,
-        _world_from_object: &AnimatedTransform,
-        _reverse_orientation: bool,
+        shape: Shape,
+        world_from_object: &AnimatedTransform,
+        reverse_orientation: bool,
     ) -> GeometryId {
-        unimplemented!()
+        if !world_from_object.is_animated() {
+            return self.add_entity(WORLD, Entity::new(shape, &world_from_object.start, reverse_orientation));
+        }
+        let object = self.begin_object();
+        let geometry = self.add_to_object(object, shape, &Transform::IDENTITY, reverse_orientation);
+        self.add_instance(object, world_from_object);
+        geometry
     }
+
     /// Starts a group of shapes that is visible only through instances.
     pub fn begin_object(&mut self) -> ObjectId {
-        unimplemented!()
+        self.n_objects += 1;
+        ObjectId(self.n_objects - 1)
     }
+
     /// Adds a shape to a group; `object_from_shape` places it in the space of the group.
     pub fn add_to_object(
         &mut self,
-        _object: ObjectId,
-        _shape: Shape,
-        _object_from_shape: &Transform,
-        _reverse_orientation: bool,
+        object: ObjectId,
+        shape: Shape,
+        object_from_shape: &Transform,
+        reverse_orientation: bool,
     ) -> GeometryId {
-        unimplemented!()
+        assert!(object.0 < self.n_objects, "object {} was not begun", object.0);
+        self.add_entity(object.0 + 1, Entity::new(shape, object_from_shape, reverse_orientation))
     }
+
     /// Places a group in the world; returns the index that [`crate::Hit::instance`] will hold.
-    pub fn add_instance(&mut self, _object: ObjectId, _world_from_object: &AnimatedTransform) -> u32 {
-        unimplemented!()
+    pub fn add_instance(&mut self, object: ObjectId, world_from_object: &AnimatedTransform) -> u32 {
+        assert!(object.0 < self.n_objects, "object {} was not begun", object.0);
+        self.instances.push((object, *world_from_object));
+        (self.instances.len() - 1) as u32
     }
-    /// Builds the hierarchies, in parallel on the current rayon pool.
+
+    fn add_entity(&mut self, group: u32, entity: Entity) -> GeometryId {
+        self.entities.push(entity);
+        self.groups.push(group);
+        GeometryId((self.entities.len() - 1) as u32)
+    }
+
+    /// Builds the hierarchies, in parallel on the current rayon pool. The result does not depend on its size.
     #[must_use]
     pub fn build(self) -> Geometry {
-        unimplemented!()
+        let entities = self.entities;
+        let vertices =
+            |reference: PrimitiveRef| entities[reference.geometry as usize].triangle(reference.primitive);
+        let mut primitives: Vec<Vec<BuildPrimitive>> = vec![Vec::new(); self.n_objects as usize + 1];
+        for (index, (entity, group)) in entities.iter().zip(&self.groups).enumerate() {
+            entity.append_primitives(index as u32, &mut primitives[*group as usize]);
+        }
+        let mut primitives = primitives.into_iter();
+        let mut world = primitives.next().unwrap_or_default();
+        let objects: Vec<Bvh> = primitives.map(|own| bvh::build(own, &vertices)).collect();
+        let mut instances = Vec::with_capacity(self.instances.len());
+        for (index, (object, world_from_object)) in self.instances.iter().enumerate() {
+            let bounds = objects[object.0 as usize].bounds();
+            let instance = Instance::new(object.0 + 1, world_from_object);
+            if let Some(bounds) = Instance::world_bounds(world_from_object, bounds) {
+                let reference = PrimitiveRef { geometry: INSTANCE, primitive: index as u32 };
+                world.push(BuildPrimitive::item(reference, bounds));
+            }
+            instances.push(instance);
+        }
+        let mut groups = vec![bvh::build(world, &vertices)];
+        groups.extend(objects);
+        Geometry::new(entities, self.groups, groups, instances)
     }
 }

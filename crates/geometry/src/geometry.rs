@@ -1,118 +1,215 @@
 //! The immutable geometry of a scene.
-use crate::hit::{GeometryId, Hit, Reference, ShapeSample, SurfacePoint};
-use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray, Vector3};
-/// Everything that a ray can meet.
+
+use etendue_math::{Bounds3, Point2, Ray};
+
+use crate::builder::WORLD;
+use crate::bvh::{Bvh, INSTANCE, PrimitiveRef, TraversalRay, Verdict, Visitor};
+use crate::hit::{GeometryId, Hit, NO_INSTANCE, SurfacePoint};
+use crate::instance::Instance;
+use crate::mesh::heap;
+use crate::shape::entity::Entity;
+
+/// Everything that a ray can meet. Made by [`crate::GeometryBuilder`].
 #[derive(Debug)]
-pub struct Geometry {}
+pub struct Geometry {
+    pub(crate) entities: Vec<Entity>,
+    /// Group of each entity.
+    entity_groups: Vec<u32>,
+    /// Hierarchy of the world, then of each object.
+    groups: Vec<Bvh>,
+    instances: Vec<Instance>,
+}
+
 /// How much there is, for people.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GeometryCounts {
     /// Shape entities.
     pub n_geometries: usize,
-    /// Triangles stored (instances not counted).
+    /// Triangles stored; instances do not count again.
     pub n_triangles: usize,
     /// Bilinear patches stored.
     pub n_patches: usize,
     /// Spheres, disks and cylinders.
     pub n_quadrics: usize,
-    /// Groups.
+    /// Groups for instancing.
     pub n_objects: usize,
     /// Instances of groups.
     pub n_instances: usize,
     /// Nodes of all hierarchies.
     pub n_nodes: usize,
 }
-#[expect(unused_variables, reason = "bodies follow")]
+
 impl Geometry {
+    pub(crate) const fn new(
+        entities: Vec<Entity>,
+        entity_groups: Vec<u32>,
+        groups: Vec<Bvh>,
+        instances: Vec<Instance>,
+    ) -> Self {
+        Self { entities, entity_groups, groups, instances }
+    }
+
     /// The nearest accepted hit with t in (0, `t_max`). `filter` sees each candidate and may refuse it.
+    #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32, filter: &impl Fn(&Hit) -> bool) -> Option<Hit> {
-        unimplemented!()
+        let mut search =
+            Search::<_, false> { geometry: self, ray: *ray, instance: NO_INSTANCE, filter, best: None };
+        search.run(WORLD, t_max);
+        search.best
     }
+
     /// True if any accepted hit has t in (0, `t_max`).
+    #[inline]
     pub fn occluded(&self, ray: &Ray, t_max: f32, filter: &impl Fn(&Hit) -> bool) -> bool {
-        unimplemented!()
+        let mut search =
+            Search::<_, true> { geometry: self, ray: *ray, instance: NO_INSTANCE, filter, best: None };
+        search.run(WORLD, t_max);
+        search.best.is_some()
     }
+
     /// Position, normals and derivatives at a hit, in world space. `ray` is the ray that found the hit.
     #[must_use]
     pub fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        unimplemented!()
+        let entity = &self.entities[hit.geometry.0 as usize];
+        if hit.instance == NO_INSTANCE {
+            return entity.surface(hit.primitive, ray, hit.t, hit.uv).surface;
+        }
+        let instance = &self.instances[hit.instance as usize];
+        let local = entity.surface(hit.primitive, &instance.group_ray(ray), hit.t, hit.uv);
+        instance.world_surface(&local, ray.time)
     }
+
     /// Texture coordinates at a hit, cheaper than [`surface_point`](Self::surface_point).
     #[must_use]
     pub fn surface_uv(&self, hit: &Hit) -> Point2 {
-        unimplemented!()
+        self.entities[hit.geometry.0 as usize].uv(hit.primitive, hit.uv)
     }
+
     /// The box around everything, at all times; empty if there is nothing.
     #[must_use]
     pub fn bounds(&self) -> Bounds3 {
-        unimplemented!()
+        self.groups[WORLD as usize].bounds()
     }
+
     /// Triangles or patches of an entity; 1 for quadrics.
     #[must_use]
     pub fn n_primitives(&self, geometry: GeometryId) -> u32 {
-        unimplemented!()
+        self.entities[geometry.0 as usize].n_primitives()
     }
+
     /// True if the entity stands still in the world and belongs to no object, so that it may be a light source.
     #[must_use]
     pub fn can_emit(&self, geometry: GeometryId) -> bool {
-        unimplemented!()
+        self.entity_groups[geometry.0 as usize] == WORLD
     }
-    /// Area of a primitive in square metres.
-    #[must_use]
-    pub fn area(&self, geometry: GeometryId, primitive: u32) -> f32 {
-        unimplemented!()
-    }
-    /// Box around a primitive.
-    #[must_use]
-    pub fn primitive_bounds(&self, geometry: GeometryId, primitive: u32) -> Bounds3 {
-        unimplemented!()
-    }
-    /// Axis and cosine of the half angle of a cone that holds the normals of a primitive.
-    #[must_use]
-    pub fn emission_cone(&self, geometry: GeometryId, primitive: u32) -> (Vector3, f32) {
-        unimplemented!()
-    }
-    /// A point of a primitive, uniform in area.
-    #[must_use]
-    pub fn sample_area(&self, geometry: GeometryId, primitive: u32, u: Point2) -> Option<ShapeSample> {
-        unimplemented!()
-    }
-    /// A point of a primitive as seen from `reference`, with its density per steradian.
-    #[must_use]
-    pub fn sample_from(
-        &self,
-        geometry: GeometryId,
-        primitive: u32,
-        reference: &Reference,
-        u: Point2,
-    ) -> Option<(ShapeSample, f32)> {
-        unimplemented!()
-    }
-    /// Density per steradian with which [`sample_from`](Self::sample_from) chooses the unit direction `wi`; 0 where it misses.
-    #[must_use]
-    pub fn pdf_from(&self, geometry: GeometryId, primitive: u32, reference: &Reference, wi: Vector3) -> f32 {
-        unimplemented!()
-    }
-    /// The same density for a known point `p` with normal `n` of the primitive, without tracing a ray.
-    #[must_use]
-    pub fn pdf_from_point(
-        &self,
-        geometry: GeometryId,
-        primitive: u32,
-        reference: &Reference,
-        p: Point3,
-        n: Normal3,
-    ) -> f32 {
-        unimplemented!()
-    }
+
     /// Bytes on the heap.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        unimplemented!()
+        let entities: usize = self.entities.iter().map(Entity::memory_bytes).sum();
+        let instances: usize = self.instances.iter().map(Instance::memory_bytes).sum();
+        entities + instances + self.hierarchy_bytes() + heap(&self.entities) + heap(&self.instances)
     }
+
+    /// Bytes on the heap of the hierarchies alone.
+    #[must_use]
+    pub fn hierarchy_bytes(&self) -> usize {
+        self.groups.iter().map(Bvh::memory_bytes).sum::<usize>() + heap(&self.groups)
+    }
+
     /// How much there is.
     #[must_use]
     pub fn counts(&self) -> GeometryCounts {
-        unimplemented!()
+        let mut counts = GeometryCounts {
+            n_objects: self.groups.len() - 1,
+            n_instances: self.instances.len(),
+            n_nodes: self.groups.iter().map(Bvh::n_nodes).sum(),
+            ..GeometryCounts::default()
+        };
+        for entity in &self.entities {
+            entity.count(&mut counts);
+        }
+        counts
+    }
+}
+
+/// One question in progress: the nearest hit, or `ANY` hit.
+struct Search<'a, F, const ANY: bool> {
+    geometry: &'a Geometry,
+    /// The ray in the space of the group that is searched.
+    ray: Ray,
+    instance: u32,
+    filter: &'a F,
+    best: Option<Hit>,
+}
+
+impl<F: Fn(&Hit) -> bool, const ANY: bool> Search<'_, F, ANY> {
+    #[inline]
+    fn run(&mut self, group: u32, t_max: f32) {
+        let bvh = &self.geometry.groups[group as usize];
+        if let Some(prepared) = TraversalRay::new(&self.ray, &bvh.bounds()) {
+            bvh.traverse(&prepared, t_max, self);
+        }
+    }
+
+    #[inline]
+    fn consider(&mut self, reference: PrimitiveRef, t: f32, uv: [f32; 2]) -> Verdict {
+        let hit = Hit {
+            t,
+            geometry: GeometryId(reference.geometry),
+            primitive: reference.primitive,
+            instance: self.instance,
+            uv,
+        };
+        if !(self.filter)(&hit) {
+            return Verdict::Pass;
+        }
+        self.best = Some(hit);
+        if ANY { Verdict::Stop } else { Verdict::Shorten(t) }
+    }
+
+    fn enter(&mut self, index: u32, t_max: f32) -> Verdict {
+        let instance = &self.geometry.instances[index as usize];
+        let mut inner = Search::<_, ANY> {
+            geometry: self.geometry,
+            ray: instance.group_ray(&self.ray),
+            instance: index,
+            filter: self.filter,
+            best: None,
+        };
+        inner.run(instance.group, t_max);
+        match inner.best {
+            None => Verdict::Pass,
+            Some(hit) => {
+                self.best = Some(hit);
+                if ANY { Verdict::Stop } else { Verdict::Shorten(hit.t) }
+            }
+        }
+    }
+}
+
+impl<F: Fn(&Hit) -> bool, const ANY: bool> Visitor for Search<'_, F, ANY> {
+    #[inline]
+    fn triangle(&mut self, triangle: PrimitiveRef, t: f32, b: [f32; 2]) -> Verdict {
+        self.consider(triangle, t, b)
+    }
+
+    #[inline(never)]
+    fn item(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict {
+        if item.geometry == INSTANCE {
+            return self.enter(item.primitive, t_max);
+        }
+        let entity = &self.geometry.entities[item.geometry as usize];
+        for candidate in entity.intersect(item.primitive, &self.ray).into_iter().flatten() {
+            let t = candidate.t as f32;
+            if t <= 0.0 || t >= t_max {
+                continue;
+            }
+            let verdict = self.consider(item, t, [candidate.u as f32, candidate.v as f32]);
+            if verdict != Verdict::Pass {
+                return verdict;
+            }
+        }
+        Verdict::Pass
     }
 }

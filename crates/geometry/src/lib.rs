@@ -12,7 +12,12 @@ mod shape;
 
 mod builder;
 mod geometry;
+mod instance;
+mod light_sampling;
 mod subdivision;
+
+mod bvh;
+mod double;
 
 pub use builder::GeometryBuilder;
 pub use geometry::{Geometry, GeometryCounts};

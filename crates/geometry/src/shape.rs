@@ -1,6 +1,29 @@
 //! The closed set of shapes.
+//!
+//! To add one: a variant of [`Shape`], a file with its inherent methods (`bounds`, `intersect`, `surface`, `area`,
+//! `sample`), and its arm in every `match` that the compiler then reports in `entity.rs` (and, for shapes given by
+//! a formula, in `quadric.rs`).
 
-use crate::mesh::{BilinearMesh, TriangleMesh};
+mod cylinder;
+mod disk;
+pub(crate) mod entity;
+mod patches;
+mod plane;
+mod quadric;
+mod solid_angle;
+mod sphere;
+mod triangles;
+
+#[cfg(test)]
+mod tests;
+
+use std::f64::consts::TAU;
+
+use etendue_math::{Bounds3, Point3, Vector3};
+use glam::DVec3;
+
+use crate::hit::SurfacePoint;
+use crate::mesh::{BilinearMesh, MeshError, TriangleMesh};
 
 /// A surface in object space, in metres.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,4 +65,74 @@ pub enum Shape {
         /// Largest azimuth in radians, 2 pi for all.
         phi_max_rad: f32,
     },
+}
+
+impl Shape {
+    /// A whole sphere.
+    #[must_use]
+    pub const fn sphere(radius: f32) -> Self {
+        Self::Sphere { radius, z_min: -radius, z_max: radius, phi_max_rad: std::f32::consts::TAU }
+    }
+
+    /// Checks the arrays of meshes; shapes given by a formula are always valid.
+    pub fn validate(&self) -> Result<(), MeshError> {
+        match self {
+            Self::Triangles(mesh) => mesh.validate(),
+            Self::Bilinear(mesh) => mesh.validate(),
+            Self::Sphere { .. } | Self::Disk { .. } | Self::Cylinder { .. } => Ok(()),
+        }
+    }
+}
+
+/// A hit of a shape that is not a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Candidate {
+    pub(crate) t: f64,
+    pub(crate) u: f64,
+    pub(crate) v: f64,
+}
+
+/// At most two hits in order of t.
+pub(crate) type Candidates = [Option<Candidate>; 2];
+
+/// Differential geometry in the space of the group, with the position before rounding.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LocalSurface {
+    pub(crate) p: DVec3,
+    pub(crate) surface: SurfacePoint,
+}
+
+/// Azimuth in [0, 2 pi).
+fn azimuth(p: DVec3) -> f64 {
+    let phi = p.y.atan2(p.x);
+    if phi < 0.0 { phi + TAU } else { phi }
+}
+
+/// An azimuth limit in [0, 2 pi]; the rounded 2 pi of single precision is taken for the whole circle.
+fn clamp_azimuth(phi_max: f64) -> f64 {
+    if phi_max >= TAU * (1.0 - 1e-6) { TAU } else { phi_max.max(0.0) }
+}
+
+/// The smallest single-precision box around a double-precision one.
+fn round_outwards(min: DVec3, max: DVec3) -> Bounds3 {
+    let down = |x: f64| (x as f32).next_down();
+    let up = |x: f64| (x as f32).next_up();
+    Bounds3 {
+        min: Point3::new(down(min.x), down(min.y), down(min.z)),
+        max: Point3::new(up(max.x), up(max.y), up(max.z)),
+    }
+}
+
+/// Derivatives of the unit normal from first and second derivatives of position (Weingarten's equations).
+fn weingarten(dpdu: DVec3, dpdv: DVec3, n: DVec3, second: [DVec3; 3]) -> (Vector3, Vector3) {
+    let [d2uu, d2uv, d2vv] = second;
+    let (e1, f1, g1) = (dpdu.dot(dpdu), dpdu.dot(dpdv), dpdv.dot(dpdv));
+    let (e2, f2, g2) = (n.dot(d2uu), n.dot(d2uv), n.dot(d2vv));
+    let determinant = e1 * g1 - f1 * f1;
+    if determinant == 0.0 {
+        return (Vector3::default(), Vector3::default());
+    }
+    let dndu = dpdu * ((f2 * f1 - e2 * g1) / determinant) + dpdv * ((e2 * f1 - f2 * e1) / determinant);
+    let dndv = dpdu * ((g2 * f1 - f2 * g1) / determinant) + dpdv * ((f2 * f1 - g2 * e1) / determinant);
+    (crate::double::to_vector(dndu), crate::double::to_vector(dndv))
 }

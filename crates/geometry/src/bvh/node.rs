@@ -1,0 +1,112 @@
+//! A node with eight children, and how a child is named in 32 bits.
+
+use super::TraversalRay;
+use crate::bvh::build::Box3;
+use std::ops::Range;
+
+/// Upper two bits of a child that is a node.
+pub(super) const INNER: u32 = 0;
+/// Upper two bits of a child that is a run of triangle blocks.
+pub(super) const TRIANGLES: u32 = 1;
+/// Upper two bits of a child that is a run of items.
+pub(super) const ITEMS: u32 = 2;
+/// No child.
+pub(super) const EMPTY: u32 = u32::MAX;
+/// Longest run that a leaf can name.
+pub(super) const MAX_RUN: usize = 8;
+
+/// Names a node.
+pub(super) fn node_index(index: usize) -> u32 {
+    assert!(index < 1 << 30, "too many nodes");
+    index as u32
+}
+
+/// Names a leaf: a run of `n` blocks or items from `first` on.
+pub(super) fn leaf(kind: u32, first: usize, n: usize) -> u32 {
+    assert!(first < 1 << 27, "too many leaves");
+    assert!((1..=MAX_RUN).contains(&n), "leaf of {n}");
+    kind << 30 | (first as u32) << 3 | (n as u32 - 1)
+}
+
+/// The run that a leaf names.
+#[inline]
+pub(super) const fn leaf_range(leaf: u32) -> Range<usize> {
+    let first = (leaf << 2 >> 5) as usize;
+    first..first + (leaf & 7) as usize + 1
+}
+
+/// The same child after its array was appended to another one.
+pub(super) fn moved(child: u32, n_nodes: usize, n_blocks: usize, n_items: usize) -> u32 {
+    match child >> 30 {
+        INNER => node_index(child as usize + n_nodes),
+        TRIANGLES => moved_leaf(child, TRIANGLES, n_blocks),
+        ITEMS => moved_leaf(child, ITEMS, n_items),
+        _ => child,
+    }
+}
+
+fn moved_leaf(child: u32, kind: u32, offset: usize) -> u32 {
+    let range = leaf_range(child);
+    leaf(kind, range.start + offset, range.len())
+}
+
+/// Boxes of eight children, coordinate by coordinate.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Node {
+    /// Lower x, y, z, upper x, y, z.
+    planes: [[f32; 8]; 6],
+    /// See [`leaf`] and [`node_index`].
+    pub(super) children: [u32; 8],
+}
+
+impl Node {
+    /// A node without children: its boxes are missed by every ray.
+    pub(super) const EMPTY: Self = Self {
+        planes: [
+            [f32::INFINITY; 8],
+            [f32::INFINITY; 8],
+            [f32::INFINITY; 8],
+            [f32::NEG_INFINITY; 8],
+            [f32::NEG_INFINITY; 8],
+            [f32::NEG_INFINITY; 8],
+        ],
+        children: [EMPTY; 8],
+    };
+
+    /// Sets one child.
+    pub(super) fn set(&mut self, slot: usize, bounds: &Box3, child: u32) {
+        for axis in 0..3 {
+            self.planes[axis][slot] = bounds.min[axis];
+            self.planes[axis + 3][slot] = bounds.max[axis];
+        }
+        self.children[slot] = child;
+    }
+
+    /// Which children the ray meets with t in (0, `t_max`), one bit each, and where it enters them.
+    ///
+    /// The comparisons let NaN lose: 0 * infinity arises where a ray runs within a plane, and such a plane bounds
+    /// nothing.
+    #[inline(always)]
+    pub(super) fn test(&self, ray: &TraversalRay, t_max: f32) -> (u32, [f32; 8]) {
+        let mut near = [0.0_f32; 8];
+        let mut far = [t_max; 8];
+        for axis in 0..3 {
+            let inverse = ray.inverse[axis];
+            let near_plane = &self.planes[ray.near_plane[axis]];
+            let far_plane = &self.planes[ray.far_plane[axis]];
+            let (near_origin, far_origin) = (ray.near_origin[axis], ray.far_origin[axis]);
+            for child in 0..8 {
+                let enter = (near_plane[child] - near_origin) * inverse;
+                let leave = (far_plane[child] - far_origin) * inverse;
+                near[child] = if enter > near[child] { enter } else { near[child] };
+                far[child] = if leave < far[child] { leave } else { far[child] };
+            }
+        }
+        let mut mask = 0;
+        for child in 0..8 {
+            mask |= u32::from(near[child] <= far[child] * TraversalRay::WIDEN) << child;
+        }
+        (mask, near)
+    }
+}

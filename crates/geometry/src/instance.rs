@@ -1,0 +1,119 @@
+//! Instances: a group of shapes placed in the world, still or moving (SPEC GEO-10).
+//!
+//! Rays are carried to the space of the group in double precision and rounded once, hits are carried back.
+//! Directions are not normalised, so that t keeps its meaning.
+
+use etendue_math::{AnimatedTransform, Bounds3, Motion, Ray, Vector3};
+use glam::{DAffine3, DVec3};
+
+use crate::double::{self, NormalMap};
+use crate::hit::SurfacePoint;
+use crate::shape::LocalSurface;
+
+/// A placed group.
+#[derive(Clone, Debug)]
+pub(crate) struct Instance {
+    /// Index of its hierarchy.
+    pub(crate) group: u32,
+    place: Place,
+}
+
+#[derive(Clone, Debug)]
+enum Place {
+    Still(Box<Maps>),
+    Moving(Box<Motion>),
+}
+
+/// Both directions of a map.
+#[derive(Clone, Copy, Debug)]
+struct Maps {
+    world_from_group: DAffine3,
+    group_from_world: DAffine3,
+}
+
+impl Maps {
+    fn new(world_from_group: DAffine3) -> Self {
+        Self { world_from_group, group_from_world: world_from_group.inverse() }
+    }
+}
+
+impl Instance {
+    /// Places a group.
+    pub(crate) fn new(group: u32, world_from_object: &AnimatedTransform) -> Self {
+        let place = if world_from_object.is_animated() {
+            Place::Moving(Box::new(world_from_object.motion()))
+        } else {
+            Place::Still(Box::new(Maps::new(double::affine(&world_from_object.start))))
+        };
+        Self { group, place }
+    }
+
+    /// The box of the group at all times, with room for rounding; `None` if there is nothing to hit.
+    pub(crate) fn world_bounds(world_from_object: &AnimatedTransform, bounds: Bounds3) -> Option<Bounds3> {
+        if bounds.is_empty() {
+            return None;
+        }
+        let bounds = world_from_object.motion_bounds(bounds);
+        let largest = bounds.min.abs().max(bounds.max.abs());
+        let margin = largest.as_vector() * (4.0 * f32::EPSILON) + Vector3::splat(f32::MIN_POSITIVE);
+        let bounds = Bounds3 { min: bounds.min - margin, max: bounds.max + margin };
+        (bounds.min.is_finite() && bounds.max.is_finite()).then_some(bounds)
+    }
+
+    fn maps(&self, time: f32) -> Maps {
+        match &self.place {
+            Place::Still(maps) => **maps,
+            Place::Moving(motion) => Maps::new(double::affine(&motion.at(time))),
+        }
+    }
+
+    /// The ray in the space of the group.
+    pub(crate) fn group_ray(&self, ray: &Ray) -> Ray {
+        let maps = self.maps(ray.time);
+        let origin = maps.group_from_world.transform_point3(double::point(ray.origin));
+        let direction = maps.group_from_world.transform_vector3(double::vector(ray.direction));
+        Ray { origin: double::to_point(origin), direction: double::to_vector(direction), time: ray.time }
+    }
+
+    /// Carries differential geometry to the world.
+    pub(crate) fn world_surface(&self, local: &LocalSurface, time: f32) -> SurfacePoint {
+        let maps = self.maps(time);
+        let map = &maps.world_from_group;
+        let normals = NormalMap::new(&maps.group_from_world);
+        let s = &local.surface;
+        let vector = |v: Vector3| double::to_vector(map.transform_vector3(double::vector(v)));
+        let (ng, _) = normals.apply(double::normal(s.ng), [DVec3::ZERO; 2]);
+        let (ns, dn) = normals.apply(double::normal(s.ns), [s.dndu, s.dndv].map(double::vector));
+        let p = double::to_point(map.transform_point3(local.p));
+        SurfacePoint {
+            p,
+            p_error: double::rounding_error(p) + world_error(map, local),
+            ng: double::to_normal(ng),
+            ns: double::to_normal(ns),
+            uv: s.uv,
+            dpdu: vector(s.dpdu),
+            dpdv: vector(s.dpdv),
+            shading_dpdu: vector(s.shading_dpdu),
+            shading_dpdv: vector(s.shading_dpdv),
+            dndu: double::to_vector(dn[0]),
+            dndv: double::to_vector(dn[1]),
+            face_index: s.face_index,
+        }
+    }
+
+    /// Bytes on the heap.
+    pub(crate) const fn memory_bytes(&self) -> usize {
+        match &self.place {
+            Place::Still(_) => size_of::<Maps>(),
+            Place::Moving(_) => size_of::<Motion>(),
+        }
+    }
+}
+
+/// The error in the world of a ray that starts at the point and has its origin rounded in the space of the group.
+fn world_error(map: &DAffine3, local: &LocalSurface) -> Vector3 {
+    let m = map.matrix3;
+    let error = double::vector(local.surface.p_error);
+    let carried = m.x_axis.abs() * error.x + m.y_axis.abs() * error.y + m.z_axis.abs() * error.z;
+    double::to_vector(carried)
+}

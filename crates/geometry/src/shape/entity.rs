@@ -1,0 +1,227 @@
+//! A shape in the space of its group, ready for intersection: one `match` per operation.
+
+use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray, Transform, Vector3};
+
+use super::cylinder::Cylinder;
+use super::disk::Disk;
+use super::patches::Patches;
+use super::quadric::{Quadric, QuadricShape};
+use super::sphere::Sphere;
+use super::triangles::Triangles;
+use super::{Candidates, LocalSurface, Shape};
+use crate::bvh::{BuildPrimitive, PrimitiveRef, intersect_triangle};
+use crate::double;
+use crate::geometry::GeometryCounts;
+use crate::hit::{Reference, ShapeSample};
+
+/// A placed shape.
+#[derive(Clone, Debug)]
+pub(crate) enum Entity {
+    /// A triangle mesh.
+    Triangles(Triangles),
+    /// A mesh of patches.
+    Patches(Patches),
+    /// A sphere, disk or cylinder.
+    Quadric(Box<Quadric>),
+}
+
+impl Entity {
+    /// Places a shape.
+    pub(crate) fn new(shape: Shape, group_from_shape: &Transform, reverse_orientation: bool) -> Self {
+        let quadric = |shape: QuadricShape| {
+            let map = double::affine(group_from_shape);
+            Self::Quadric(Box::new(Quadric::new(shape, map, reverse_orientation)))
+        };
+        match shape {
+            Shape::Triangles(mesh) => {
+                Self::Triangles(Triangles::new(mesh, group_from_shape, reverse_orientation))
+            }
+            Shape::Bilinear(mesh) => Self::Patches(Patches::new(mesh, group_from_shape, reverse_orientation)),
+            Shape::Sphere { radius, z_min, z_max, phi_max_rad } => quadric(QuadricShape::Sphere(
+                Sphere::new(radius.into(), z_min.into(), z_max.into(), phi_max_rad.into()),
+            )),
+            Shape::Disk { height, radius, inner_radius, phi_max_rad } => quadric(QuadricShape::Disk(
+                Disk::new(height.into(), radius.into(), inner_radius.into(), phi_max_rad.into()),
+            )),
+            Shape::Cylinder { radius, z_min, z_max, phi_max_rad } => quadric(QuadricShape::Cylinder(
+                Cylinder::new(radius.into(), z_min.into(), z_max.into(), phi_max_rad.into()),
+            )),
+        }
+    }
+
+    /// Appends what the hierarchy has to hold; primitives that cannot be hit are left out.
+    pub(crate) fn append_primitives(&self, geometry: u32, primitives: &mut Vec<BuildPrimitive>) {
+        let reference = |primitive: u32| PrimitiveRef { geometry, primitive };
+        match self {
+            Self::Triangles(triangles) => primitives.extend(
+                (0..self.n_primitives())
+                    .filter(|&triangle| triangles.is_valid(triangle))
+                    .map(|triangle| BuildPrimitive::triangle(reference(triangle), &self.triangle(triangle))),
+            ),
+            Self::Patches(patches) => primitives.extend(
+                (0..self.n_primitives())
+                    .filter(|&patch| patches.is_valid(patch))
+                    .map(|patch| BuildPrimitive::item(reference(patch), patches.bounds(patch))),
+            ),
+            Self::Quadric(quadric) => {
+                let bounds = quadric.bounds();
+                if bounds.min.is_finite() && bounds.max.is_finite() && quadric.area() > 0.0 {
+                    primitives.push(BuildPrimitive::item(reference(0), bounds));
+                }
+            }
+        }
+    }
+
+    /// Corners of a triangle.
+    pub(crate) fn triangle(&self, triangle: u32) -> [[f32; 3]; 3] {
+        match self {
+            Self::Triangles(triangles) => triangles.positions(triangle).map(|p| [p.x, p.y, p.z]),
+            Self::Patches(_) | Self::Quadric(_) => [[f32::NAN; 3]; 3],
+        }
+    }
+
+    /// Triangles, patches or 1.
+    pub(crate) const fn n_primitives(&self) -> u32 {
+        match self {
+            Self::Triangles(triangles) => triangles.mesh().indices.len() as u32,
+            Self::Patches(patches) => patches.mesh().indices.len() as u32,
+            Self::Quadric(_) => 1,
+        }
+    }
+
+    /// Hits of a ray in order of t; triangles through the same test as in the hierarchy.
+    pub(crate) fn intersect(&self, primitive: u32, ray: &Ray) -> Candidates {
+        match self {
+            Self::Triangles(_) => {
+                let hit = intersect_triangle(ray, &self.triangle(primitive));
+                let candidate =
+                    hit.map(|(t, b)| super::Candidate { t: t.into(), u: b[0].into(), v: b[1].into() });
+                [candidate, None]
+            }
+            Self::Patches(patches) => patches.intersect(primitive, ray),
+            Self::Quadric(quadric) => quadric.intersect(ray),
+        }
+    }
+
+    /// Differential geometry of a hit of `ray`.
+    pub(crate) fn surface(&self, primitive: u32, ray: &Ray, t: f32, uv: [f32; 2]) -> LocalSurface {
+        match self {
+            Self::Triangles(triangles) => triangles.surface(primitive, uv),
+            Self::Patches(patches) => patches.surface(primitive, uv),
+            Self::Quadric(quadric) => quadric.surface(ray, t, uv),
+        }
+    }
+
+    /// Texture coordinates of a hit.
+    pub(crate) fn uv(&self, primitive: u32, uv: [f32; 2]) -> Point2 {
+        match self {
+            Self::Triangles(triangles) => triangles.uv(primitive, uv),
+            Self::Patches(patches) => patches.uv(primitive, uv),
+            Self::Quadric(_) => Point2::new(uv[0], uv[1]),
+        }
+    }
+
+    /// Box around a primitive.
+    pub(crate) fn bounds(&self, primitive: u32) -> Bounds3 {
+        match self {
+            Self::Triangles(triangles) => triangles.bounds(primitive),
+            Self::Patches(patches) => patches.bounds(primitive),
+            Self::Quadric(quadric) => quadric.bounds(),
+        }
+    }
+
+    /// Area in square metres.
+    pub(crate) fn area(&self, primitive: u32) -> f32 {
+        match self {
+            Self::Triangles(triangles) => triangles.area(primitive),
+            Self::Patches(patches) => patches.area(primitive),
+            Self::Quadric(quadric) => quadric.area(),
+        }
+    }
+
+    /// Axis and cosine of the half angle of a cone that holds the normals.
+    pub(crate) fn emission_cone(&self, primitive: u32) -> (Vector3, f32) {
+        let (axis, cosine) = match self {
+            Self::Triangles(triangles) => triangles.emission_cone(primitive),
+            Self::Patches(patches) => patches.emission_cone(primitive),
+            Self::Quadric(quadric) => quadric.emission_cone(),
+        };
+        (axis.as_vector(), cosine)
+    }
+
+    /// A point by area.
+    pub(crate) fn sample_area(&self, primitive: u32, u: Point2) -> Option<ShapeSample> {
+        match self {
+            Self::Triangles(triangles) => triangles.sample_area(primitive, u),
+            Self::Patches(patches) => patches.sample_area(primitive, u),
+            Self::Quadric(quadric) => quadric.sample_area(u),
+        }
+    }
+
+    /// A point by direction from `reference`, with its density per steradian; `None` where that does not apply.
+    pub(crate) fn sample_direction(
+        &self,
+        primitive: u32,
+        reference: &Reference,
+        u: Point2,
+    ) -> Option<(ShapeSample, f32)> {
+        match self {
+            Self::Triangles(triangles) => triangles.sample_solid_angle(primitive, reference.p, u),
+            Self::Patches(patches) => patches.sample_solid_angle(primitive, reference.p, u),
+            Self::Quadric(quadric) => quadric.sample_cone(reference.p, u),
+        }
+    }
+
+    /// The density per steradian of [`sample_direction`](Self::sample_direction) where that applies.
+    pub(crate) fn direction_pdf(&self, primitive: u32, reference: &Reference) -> Option<f32> {
+        match self {
+            Self::Triangles(triangles) => triangles.solid_angle_pdf(primitive, reference.p),
+            Self::Patches(patches) => patches.solid_angle_pdf(primitive, reference.p),
+            Self::Quadric(quadric) => quadric.cone_pdf(reference.p),
+        }
+    }
+
+    /// Density per area of [`sample_area`](Self::sample_area) and the normal at a point found by a ray.
+    pub(crate) fn area_pdf_at_hit(&self, primitive: u32, ray: &Ray, t: f32, uv: [f64; 2]) -> (f32, Normal3) {
+        match self {
+            Self::Triangles(triangles) => {
+                (1.0 / triangles.area(primitive), triangles.emission_cone(primitive).0)
+            }
+            Self::Patches(patches) => (patches.pdf_a(primitive, uv), patches.normal(primitive, uv)),
+            Self::Quadric(quadric) => {
+                let n = quadric.surface(ray, t, [0.0; 2]).surface.ng;
+                (quadric.pdf_a(n), n)
+            }
+        }
+    }
+
+    /// Density per area of [`sample_area`](Self::sample_area) at a point on the primitive.
+    pub(crate) fn area_pdf_at_point(&self, primitive: u32, p: Point3, n: Normal3) -> f32 {
+        match self {
+            Self::Triangles(triangles) => 1.0 / triangles.area(primitive),
+            Self::Patches(patches) => {
+                patches.position_of(primitive, p, n).map_or(0.0, |uv| patches.pdf_a(primitive, uv))
+            }
+            Self::Quadric(quadric) => quadric.pdf_a(n),
+        }
+    }
+
+    /// Bytes on the heap.
+    pub(crate) fn memory_bytes(&self) -> usize {
+        match self {
+            Self::Triangles(triangles) => triangles.mesh().memory_bytes(),
+            Self::Patches(patches) => patches.mesh().memory_bytes(),
+            Self::Quadric(_) => size_of::<Quadric>(),
+        }
+    }
+
+    /// Adds this entity to the counts.
+    pub(crate) const fn count(&self, counts: &mut GeometryCounts) {
+        counts.n_geometries += 1;
+        match self {
+            Self::Triangles(triangles) => counts.n_triangles += triangles.mesh().indices.len(),
+            Self::Patches(patches) => counts.n_patches += patches.mesh().indices.len(),
+            Self::Quadric(_) => counts.n_quadrics += 1,
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! Surfaces of triangle meshes: what a hit means, and sampling of single triangles.
+//!
+//! p = b0 p0 + b1 p1 + b2 p2; texture coordinates, normals and tangents are interpolated alike. dpdu and dpdv solve
+//! p_i - p_2 = dpdu (u_i - u_2) + dpdv (v_i - v_2). Positions are formed in double precision, so that their error
+//! is that of rounding them.
+
+use etendue_math::{Bounds3, Frame, Normal3, Point2, Point3, Transform, Vector3};
+use glam::DVec3;
+
+use super::LocalSurface;
+use super::solid_angle::SphericalTriangle;
+use crate::double;
+use crate::hit::{ShapeSample, SurfacePoint};
+use crate::mesh::TriangleMesh;
+
+/// A triangle mesh in the space of its group.
+#[derive(Clone, Debug)]
+pub(crate) struct Triangles {
+    mesh: TriangleMesh,
+    /// True if normals without vertex normals point against the winding.
+    flips: bool,
+}
+
+/// Solid angles in which sampling by direction is accurate and worth its price, in steradians, as in pbrt-v4.
+const SPHERICAL_SAMPLING: std::ops::Range<f64> = 3e-4..6.22;
+
+impl Triangles {
+    /// Moves a mesh into the space of its group, reusing its memory.
+    pub(crate) fn new(
+        mut mesh: TriangleMesh,
+        group_from_shape: &Transform,
+        reverse_orientation: bool,
+    ) -> Self {
+        if !group_from_shape.is_identity() {
+            for p in &mut mesh.positions {
+                *p = group_from_shape.point(*p);
+            }
+            for n in &mut mesh.normals {
+                *n = group_from_shape.normal(*n);
+            }
+            for s in &mut mesh.tangents {
+                *s = group_from_shape.vector(*s);
+            }
+        }
+        if reverse_orientation {
+            for n in &mut mesh.normals {
+                *n = -*n;
+            }
+        }
+        Self { mesh, flips: reverse_orientation ^ group_from_shape.swaps_handedness() }
+    }
+
+    pub(crate) const fn mesh(&self) -> &TriangleMesh {
+        &self.mesh
+    }
+
+    pub(crate) fn positions(&self, triangle: u32) -> [Point3; 3] {
+        self.mesh.indices[triangle as usize].map(|vertex| self.mesh.positions[vertex as usize])
+    }
+
+    fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.positions(triangle).map(double::point)
+    }
+
+    fn uvs(&self, triangle: u32) -> [Point2; 3] {
+        if self.mesh.uvs.is_empty() {
+            return [Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(1.0, 1.0)];
+        }
+        self.mesh.indices[triangle as usize].map(|vertex| self.mesh.uvs[vertex as usize])
+    }
+
+    fn normals(&self, triangle: u32) -> Option<[Normal3; 3]> {
+        (!self.mesh.normals.is_empty())
+            .then(|| self.mesh.indices[triangle as usize].map(|vertex| self.mesh.normals[vertex as usize]))
+    }
+
+    /// True if the triangle can be hit: its corners are finite and not on one line.
+    pub(crate) fn is_valid(&self, triangle: u32) -> bool {
+        let positions = self.positions(triangle);
+        let [a, b, c] = positions.map(double::point);
+        positions.iter().all(|p| p.is_finite()) && (b - a).cross(c - a).length_squared() > 0.0
+    }
+
+    /// Texture coordinates for the barycentric weights of a hit.
+    pub(crate) fn uv(&self, triangle: u32, b: [f32; 2]) -> Point2 {
+        let uv = self.uvs(triangle);
+        let b0 = 1.0 - b[0] - b[1];
+        Point2::new(
+            b0 * uv[0].x + b[0] * uv[1].x + b[1] * uv[2].x,
+            b0 * uv[0].y + b[0] * uv[1].y + b[1] * uv[2].y,
+        )
+    }
+
+    /// Unit normal of the winding, or against it where the mesh flips; the zero vector for no area.
+    fn plane_normal(&self, corners: &[DVec3; 3]) -> Normal3 {
+        let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+        double::to_normal(if self.flips { -n } else { n })
+    }
+
+    /// The geometric normal and the interpolated vertex normal, the latter not normalised.
+    fn geometric_normal(
+        &self,
+        triangle: u32,
+        corners: &[DVec3; 3],
+        b: [f32; 3],
+    ) -> (Normal3, Option<Normal3>) {
+        let n = self.plane_normal(corners);
+        let Some(normals) = self.normals(triangle) else { return (n, None) };
+        let interpolated = normals[0] * b[0] + normals[1] * b[1] + normals[2] * b[2];
+        (n.facing(interpolated.as_vector()), Some(interpolated))
+    }
+
+    /// Differential geometry at barycentric weights.
+    pub(crate) fn surface(&self, triangle: u32, b: [f32; 2]) -> LocalSurface {
+        let corners = self.corners(triangle);
+        let weights = [1.0 - b[0] - b[1], b[0], b[1]];
+        let p = interpolate(&corners, b);
+        let (ng, interpolated) = self.geometric_normal(triangle, &corners, weights);
+        let uv_corners = self.uvs(triangle);
+        let (dpdu, dpdv) = position_derivatives(&corners, &uv_corners);
+        let rounded = double::to_point(p);
+        let mut surface = SurfacePoint {
+            p: rounded,
+            p_error: double::rounding_error(rounded),
+            ng,
+            ns: ng,
+            uv: self.uv(triangle, b),
+            dpdu,
+            dpdv,
+            shading_dpdu: dpdu,
+            shading_dpdv: dpdv,
+            dndu: Vector3::default(),
+            dndv: Vector3::default(),
+            face_index: self.mesh.face_indices.get(triangle as usize).copied().unwrap_or(0),
+        };
+        self.shade(triangle, weights, interpolated, &mut surface);
+        LocalSurface { p, surface }
+    }
+
+    /// Fills in shading normal, shading tangents and their derivatives.
+    fn shade(&self, triangle: u32, b: [f32; 3], interpolated: Option<Normal3>, surface: &mut SurfacePoint) {
+        if interpolated.is_none() && self.mesh.tangents.is_empty() {
+            return;
+        }
+        if let Some(ns) = interpolated.and_then(Normal3::try_normalized) {
+            surface.ns = ns;
+        }
+        let ns = surface.ns.as_vector();
+        let tangent = self.tangent(triangle, b).unwrap_or(surface.dpdu);
+        let second = ns.cross(tangent);
+        if second.length_squared() > 0.0 && second.is_finite() {
+            surface.shading_dpdu = second.cross(ns);
+            surface.shading_dpdv = second;
+        } else {
+            let frame = Frame::from_z(ns);
+            surface.shading_dpdu = frame.x;
+            surface.shading_dpdv = frame.y;
+        }
+        if let (Some(normals), Some(interpolated)) = (self.normals(triangle), interpolated) {
+            let (dndu, dndv) = normal_derivatives(&normals, &self.uvs(triangle));
+            // Of the unit normal, not of the interpolated vector.
+            let length = interpolated.as_vector().length();
+            if length > 0.0 {
+                let unit = |dn: Vector3| (dn - ns * ns.dot(dn)) / length;
+                surface.dndu = unit(dndu);
+                surface.dndv = unit(dndv);
+            }
+        }
+    }
+
+    fn tangent(&self, triangle: u32, b: [f32; 3]) -> Option<Vector3> {
+        if self.mesh.tangents.is_empty() {
+            return None;
+        }
+        let [s0, s1, s2] =
+            self.mesh.indices[triangle as usize].map(|vertex| self.mesh.tangents[vertex as usize]);
+        let s = s0 * b[0] + s1 * b[1] + s2 * b[2];
+        (s.length_squared() > 0.0).then_some(s)
+    }
+
+    /// Area in square metres.
+    pub(crate) fn area(&self, triangle: u32) -> f32 {
+        area(&self.corners(triangle)) as f32
+    }
+
+    pub(crate) fn bounds(&self, triangle: u32) -> Bounds3 {
+        Bounds3::from_points(self.positions(triangle))
+    }
+
+    /// The normal as the axis of a cone of no width.
+    pub(crate) fn emission_cone(&self, triangle: u32) -> (Normal3, f32) {
+        let corners = self.corners(triangle);
+        (self.geometric_normal(triangle, &corners, [1.0 / 3.0; 3]).0, 1.0)
+    }
+
+    /// A point, uniform in area.
+    pub(crate) fn sample_area(&self, triangle: u32, u: Point2) -> Option<ShapeSample> {
+        let area = area(&self.corners(triangle));
+        if area <= 0.0 || !area.is_finite() {
+            return None;
+        }
+        // A low-distortion map from the square (Heitz 2019).
+        let (b0, b1) = if u.x < u.y { (u.x / 2.0, u.y - u.x / 2.0) } else { (u.x - u.y / 2.0, u.y / 2.0) };
+        Some(self.sample_at(triangle, [b1, (1.0 - b0 - b1).max(0.0)], (1.0 / area) as f32))
+    }
+
+    fn sample_at(&self, triangle: u32, b: [f32; 2], pdf_a: f32) -> ShapeSample {
+        let corners = self.corners(triangle);
+        let p = double::to_point(interpolate(&corners, b));
+        let n = self.geometric_normal(triangle, &corners, [1.0 - b[0] - b[1], b[0], b[1]]).0;
+        ShapeSample { p, p_error: double::rounding_error(p), n, uv: self.uv(triangle, b), pdf_a }
+    }
+
+    /// The triangle on the sphere of directions around `p`, where sampling by direction applies.
+    fn spherical(&self, triangle: u32, p: Point3) -> Option<SphericalTriangle> {
+        let spherical = SphericalTriangle::new(&self.corners(triangle), double::point(p))?;
+        SPHERICAL_SAMPLING.contains(&spherical.solid_angle()).then_some(spherical)
+    }
+
+    /// A point uniform in solid angle from `p` with its density per steradian; `None` where sampling by area is
+    /// to be used.
+    pub(crate) fn sample_solid_angle(
+        &self,
+        triangle: u32,
+        p: Point3,
+        u: Point2,
+    ) -> Option<(ShapeSample, f32)> {
+        let spherical = self.spherical(triangle, p)?;
+        let b = spherical.sample([f64::from(u.x), f64::from(u.y)]);
+        let pdf_w = (1.0 / spherical.solid_angle()) as f32;
+        Some((self.sample_at(triangle, b.map(|b| b as f32), 0.0), pdf_w))
+    }
+
+    /// The density per steradian of [`sample_solid_angle`](Self::sample_solid_angle).
+    pub(crate) fn solid_angle_pdf(&self, triangle: u32, p: Point3) -> Option<f32> {
+        self.spherical(triangle, p).map(|spherical| (1.0 / spherical.solid_angle()) as f32)
+    }
+}
+
+/// The point with barycentric weights b1 and b2.
+fn interpolate(corners: &[DVec3; 3], b: [f32; 2]) -> DVec3 {
+    corners[0] + (corners[1] - corners[0]) * f64::from(b[0]) + (corners[2] - corners[0]) * f64::from(b[1])
+}
+
+fn area(corners: &[DVec3; 3]) -> f64 {
+    0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length()
+}
+
+/// Differences of texture coordinates to the third corner and their determinant, unless it vanishes.
+fn uv_system(uv: &[Point2; 3]) -> Option<([f64; 2], [f64; 2], f64)> {
+    let difference = |a: Point2| [f64::from(a.x) - f64::from(uv[2].x), f64::from(a.y) - f64::from(uv[2].y)];
+    let (duv02, duv12) = (difference(uv[0]), difference(uv[1]));
+    let determinant = duv02[0] * duv12[1] - duv02[1] * duv12[0];
+    (determinant.abs() >= 1e-9).then_some((duv02, duv12, determinant))
+}
+
+fn position_derivatives(corners: &[DVec3; 3], uv: &[Point2; 3]) -> (Vector3, Vector3) {
+    let (dp02, dp12) = (corners[0] - corners[2], corners[1] - corners[2]);
+    if let Some((duv02, duv12, determinant)) = uv_system(uv) {
+        let dpdu = (dp02 * duv12[1] - dp12 * duv02[1]) / determinant;
+        let dpdv = (dp12 * duv02[0] - dp02 * duv12[0]) / determinant;
+        if dpdu.cross(dpdv).length_squared() > 0.0 {
+            return (double::to_vector(dpdu), double::to_vector(dpdv));
+        }
+    }
+    let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    let frame = Frame::from_z(double::to_vector(n.normalize_or(DVec3::Z)));
+    (frame.x, frame.y)
+}
+
+/// Derivatives of the interpolated normal before normalisation.
+fn normal_derivatives(normals: &[Normal3; 3], uv: &[Point2; 3]) -> (Vector3, Vector3) {
+    let Some((duv02, duv12, determinant)) = uv_system(uv) else {
+        return (Vector3::default(), Vector3::default());
+    };
+    let dn02 = double::normal(normals[0]) - double::normal(normals[2]);
+    let dn12 = double::normal(normals[1]) - double::normal(normals[2]);
+    let dndu = (dn02 * duv12[1] - dn12 * duv02[1]) / determinant;
+    let dndv = (dn12 * duv02[0] - dn02 * duv12[0]) / determinant;
+    (double::to_vector(dndu), double::to_vector(dndv))
+}
