@@ -11,6 +11,7 @@ use etendue_spectrum::{known_but_missing, named_spectrum};
 use rayon::prelude::*;
 
 use crate::file::read_file;
+use crate::images::read_texels;
 use crate::ply::{PlyMesh, read_ply};
 use crate::spd::read_spd;
 
@@ -73,18 +74,13 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
 fn load_file(kind: Kind, path: &Path) -> Result<Loaded, String> {
     let in_file = |why: String| format!("`{}`: {why}", path.display());
     if kind == Kind::Image {
-        return read_texels(path).map(Loaded::Image).map_err(|error| in_file(error.to_string()));
+        return read_texels(path).map(Loaded::Image).map_err(|error| error.to_string());
     }
     let bytes = read_file(path).map_err(|error| error.to_string())?;
     match kind {
         Kind::Mesh => read_ply(&bytes).map(Loaded::Mesh).map_err(|error| in_file(error.to_string())),
         _ => read_spd(&bytes).map(Loaded::Spectrum).map_err(|error| in_file(error.to_string())),
     }
-}
-
-/// Stands in until the readers of images are there.
-fn read_texels(path: &Path) -> Result<Texels, String> {
-    Err(format!("cannot read images yet: {}", path.display()))
 }
 
 fn wanted_files(document: &Document) -> Wanted {

@@ -16,5 +16,6 @@ mod file;
 pub use assets::load_assets;
 pub use error::FileError;
 pub use file::read_file;
+pub use images::{ImageError, read_image, read_texels, write_image};
 pub use pbrt::{read_pbrt, read_pbrt_str, write_pbrt};
 pub use ply::read_ply;
