@@ -9,6 +9,7 @@ pub mod document;
 pub mod film;
 pub mod filter;
 pub mod light;
+pub mod material;
 pub mod parameters;
 pub mod texture;
 
