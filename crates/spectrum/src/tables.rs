@@ -45,15 +45,15 @@ impl SpectrumTables {
         id
     }
 
-    /// Adds a function given at `[wavelength in nm, value]`, ascending in wavelength, linear between and 0 outside.
+    /// Adds a function given at `[wavelength in nm, value]`, linear between the wavelengths and 0 outside.
     ///
     /// Values that are all equal over the whole range give a constant. Where samples lie closer than 1 nm, as in line
-    /// spectra, each nm takes the mean around it, so that no power is lost.
-    ///
-    /// # Panics
-    /// If the wavelengths descend.
+    /// spectra, each nm takes the mean around it, so that no power is lost. Samples out of order are sorted, samples with
+    /// infinities or NaN left out.
     pub fn add_samples(&mut self, samples: &[[f32; 2]]) -> Spectrum {
-        assert!(samples.is_sorted_by(|a, b| a[0] <= b[0]), "wavelengths must ascend");
+        let mut samples: Vec<[f32; 2]> =
+            samples.iter().copied().filter(|s| s[0].is_finite() && s[1].is_finite()).collect();
+        samples.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let Some((&[first_nm, value], &[last_nm, _])) = samples.first().zip(samples.last()) else {
             return Spectrum::Constant(0.0);
         };
@@ -63,9 +63,11 @@ impl SpectrumTables {
         }
         let is_fine = samples.windows(2).any(|w| w[1][0] - w[0][0] < 0.999);
         let table = if is_fine {
-            self.add_dense(|nm| mean_linear(samples, nm - 0.5, nm + 0.5))
+            self.add_dense(|nm| {
+                mean_linear(&samples, (nm - 0.5).max(LAMBDA_MIN_NM), (nm + 0.5).min(LAMBDA_MAX_NM))
+            })
         } else {
-            self.add_dense(|nm| piecewise_linear(samples, nm))
+            self.add_dense(|nm| piecewise_linear(&samples, nm))
         };
         Spectrum::Table { table, scale: 1.0 }
     }
