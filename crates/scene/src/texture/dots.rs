@@ -1,4 +1,4 @@
-//! Dots of radius 0.35 in about half of the unit cells of (s, t), shifted at random within their cell.
+//! Dots of radius 0.35 in about two fifths of the unit cells of (s, t), shifted at random within their cell.
 
 use etendue_math::{Point2, Point3};
 
