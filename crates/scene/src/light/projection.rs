@@ -39,6 +39,12 @@ pub struct ProjectionLight {
     distribution: PiecewiseConstant2,
 }
 
+/// Solid angle of a rectangle on the plane z = 1, given its range in x and in y.
+fn solid_angle(x: [f64; 2], y: [f64; 2]) -> f64 {
+    let corner = |x: f64, y: f64| (x * y / (1.0 + x * x + y * y).sqrt()).atan();
+    corner(x[1], y[1]) - corner(x[0], y[1]) - corner(x[1], y[0]) + corner(x[0], y[0])
+}
+
 impl ProjectionLight {
     /// Parameters in scene files.
     pub const PARAMETERS: &[ParameterSpec] = &[
@@ -69,21 +75,24 @@ impl ProjectionLight {
             Point2::new(opposite, opposite / aspect)
         };
         let screen = Bounds2 { min: Point2::new(-half.x, -half.y), max: half };
-        let cos_cubed = |i: usize| {
-            let x = half.x * (2.0 * ((i % nx) as f32 + 0.5) / nx as f32 - 1.0);
-            let y = half.y * (2.0 * ((i / nx) as f32 + 0.5) / ny as f32 - 1.0);
-            (1.0 + x * x + y * y).powf(-1.5)
-        };
-        let mut weights = sampling_weights(&picture.rgb);
-        let (mut solid_angle, mut brightness) = (0.0_f64, Vec::with_capacity(picture.rgb.len()));
-        for (i, weight) in weights.iter_mut().enumerate() {
-            let cos_cubed = cos_cubed(i);
-            *weight *= cos_cubed;
-            solid_angle += f64::from(cos_cubed);
-            brightness.push((picture.rgb[i], f64::from(cos_cubed)));
-        }
-        solid_angle *= f64::from(screen.area()) / picture.rgb.len() as f64;
-        let mean_intensity = weighted_mean(brightness.into_iter(), picture.space, picture.white);
+        let half_extent = [f64::from(half.x), f64::from(half.y)];
+        let solid_angles: Vec<f64> = (0..nx * ny)
+            .map(|i| {
+                let edge = |t: usize, n: usize, half: f64| half * (2.0 * t as f64 / n as f64 - 1.0);
+                let (x, y) = (i % nx, i / nx);
+                solid_angle(
+                    [edge(x, nx, half_extent[0]), edge(x + 1, nx, half_extent[0])],
+                    [edge(y, ny, half_extent[1]), edge(y + 1, ny, half_extent[1])],
+                )
+            })
+            .collect();
+        let weights: Vec<f32> = sampling_weights(&picture.rgb)
+            .iter()
+            .zip(&solid_angles)
+            .map(|(value, solid_angle)| value * *solid_angle as f32)
+            .collect();
+        let brightness = picture.rgb.iter().copied().zip(solid_angles.iter().copied());
+        let mean_intensity = weighted_mean(brightness, picture.space, picture.white);
         Self {
             p: world_from_light.point(Point3::ORIGIN),
             world_from_light,
@@ -91,7 +100,7 @@ impl ProjectionLight {
             image: tables.add_image(LightImage::new(nx, ny, &picture.rgb, picture.space, picture.white)),
             scale,
             screen,
-            flux: mean_intensity.scaled(solid_angle as f32),
+            flux: mean_intensity.scaled(solid_angles.iter().sum::<f64>() as f32),
             mean_intensity,
             distribution: PiecewiseConstant2::new(&weights, nx, ny, screen),
         }
