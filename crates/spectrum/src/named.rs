@@ -23,9 +23,8 @@ enum Dispersion {
     Oxide([f64; 5]),
 }
 
-/// Indices of refraction by formula. Schott catalogue of 2017; Malitson 1965 (silica), Peter 1923 (diamond), Malitson
-/// and Dodge 1972 (sapphire, ordinary), Daimon and Masumura 2007 (water, 20 °C), Stephens and Malitson 1952 (MgO),
-/// Devore 1951 (TiO2, rutile, ordinary).
+/// Indices of refraction by formula. Schott catalogue of 2017; Malitson 1965 (silica), Peter 1923 (diamond),
+/// Stephens and Malitson 1952 (MgO), Devore 1951 (TiO2, rutile, ordinary).
 const FORMULAS: &[(&str, Dispersion)] = &[
     (
         "glass-BK7",
