@@ -236,7 +236,7 @@ impl ImageMap {
             return self.bilinear(0, st);
         }
         if ratio > 1.0 {
-            minor = minor * ratio;
+            minor *= ratio;
         }
         let coarsest = self.n_levels() - 1;
         let level = minor.length().log2().clamp(0.0, coarsest as f32);
