@@ -23,7 +23,7 @@ use etendue_spectrum::Sampled;
 use super::conductor::Conductor;
 use super::dielectric::Dielectric;
 use super::diffuse::Diffuse;
-use super::fresnel::{fresnel_dielectric, refract};
+use super::fresnel::{fresnel_conductor, fresnel_dielectric, refract};
 use super::local::{abs_cos, same_hemisphere};
 use super::microfacet::Microfacets;
 use super::{BsdfSample, Lobes, TransportMode};
@@ -220,15 +220,42 @@ impl Layered {
         let phase = henyey_greenstein(arrival.dot(-exit.wi), self.g);
         let weight = if exit.is_specular() { 1.0 } else { power_heuristic(exit.pdf_w, phase) };
         let distance = self.thickness - walk.z;
+        let mut by_exit = Sampled::splat(phase * weight * transmittance(distance, exit.wi));
+        if exit.is_specular()
+            && let Base::Conductor(mirror) = self.base
+        {
+            by_exit = self.add_mirrored(by_exit, &mirror, walk.z, arrival, exit.wi);
+        }
         // `walk.beta` already holds the albedo: both ways of leaving share it.
-        let by_exit = exit.weight / abs_cos(exit.wi) * (phase * weight * transmittance(distance, exit.wi));
-        let sampled = henyey_greenstein(arrival.dot(walk.w), self.g);
+        let by_exit = by_exit * exit.weight / abs_cos(exit.wi);
         let by_phase = if walk.w.z > 0.0 {
+            let sampled = henyey_greenstein(arrival.dot(walk.w), self.g);
             self.connect_coat(walk, distance, wi, Some(sampled), mode)
         } else {
             Sampled::ZERO
         };
         walk.beta * by_exit + by_phase
+    }
+
+    /// Between a smooth coat and a mirror, the walk cannot find what leaves after further mirror reflections. They all leave
+    /// at the same angle: what starts `up` or down from height `z` is multiplied by a geometric series.
+    fn add_mirrored(
+        &self,
+        up: Sampled,
+        base: &Conductor,
+        z: f32,
+        arrival: Vector3,
+        exit: Vector3,
+    ) -> Sampled {
+        if !base.microfacets.is_smooth() {
+            return up;
+        }
+        let mirror = fresnel_conductor(abs_cos(exit), base.eta, base.k);
+        let phase = henyey_greenstein(arrival.dot(Vector3::new(-exit.x, -exit.y, exit.z)), self.g);
+        let down = mirror * (phase * transmittance(z + self.thickness, exit));
+        let coat = fresnel_dielectric(-abs_cos(exit), self.coat.eta);
+        let round_trip = mirror * (coat * transmittance(2.0 * self.thickness, exit));
+        (up + down) / (Sampled::ONE - round_trip)
     }
 
     /// From the base towards the direction inside that leaves to `wi`.

@@ -8,9 +8,9 @@
 //! Masking-Shadowing Function in Microfacet-Based BRDFs"; normals visible from `wo` are sampled as in Heitz 2018,
 //! "Sampling the GGX Distribution of Visible Normals".)
 //!
-//! Light that bounces several times among facets is lost: a rough white metal of alpha 1 reflects about a third less
-//! than it should. All formulas use `s(w) = sqrt(ax² x² + ay² y² + z²)`, which keeps them finite at grazing angles:
-//! `G1(w) / |z| = 2 / (|z| + s(w))`.
+//! Light that bounces several times among facets is lost: a white metal, lit along the normal, keeps 99 % of it at
+//! alpha 0.1, 69 % at 0.5 and 1 - ln 2 = 31 % at 1. All formulas use `s(w) = sqrt(ax² x² + ay² y² + z²)`, which
+//! keeps them finite at grazing angles: `G1(w) / |z| = 2 / (|z| + s(w))`.
 
 use std::f32::consts::PI;
 
