@@ -30,7 +30,7 @@ pub use spherical::{Spherical, SphericalMapping};
 /// How rays leave the camera, in camera space.
 ///
 /// To add one: a file with a plain struct that turns raster and lens positions into rays, a variant here, its arm in
-/// [`Projection::ray`], in `importance.rs` and in `build.rs`, its parameters there, a line in the tests.
+/// `Projection::ray`, in `importance.rs` and in `build.rs`, its parameters there, a line in the tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
     /// Pinhole or thin lens.
