@@ -12,7 +12,7 @@
 //!   (Owen 2003, "Variance with Alternative Scramblings of Digital Nets").
 
 use crate::Point2;
-use crate::rng::{ONE_MINUS_EPSILON, hash64, mix64, unit_f32};
+use crate::rng::{ONE_MINUS_EPSILON, mix64, unit_f32};
 
 /// Number of prime bases at hand.
 pub const N_PRIMES: usize = 128;
@@ -216,7 +216,7 @@ pub fn permutation_element(i: u32, n: u32, seed: u32) -> u32 {
     assert!(i < n, "element {i} of a permutation of {n}");
     let mask = n.next_power_of_two().wrapping_sub(1);
     let shift = mask.count_ones().div_ceil(2).max(1);
-    let keys = hash64(&[u64::from(seed), u64::from(n)]);
+    let keys = mix64(u64::from(seed) << 32 | u64::from(n));
     let mut x = i;
     loop {
         let mut key = keys;
@@ -225,7 +225,7 @@ pub fn permutation_element(i: u32, n: u32, seed: u32) -> u32 {
             x = x.wrapping_add(key as u32) & mask;
             x = x.wrapping_mul((key >> 32) as u32 | 1) & mask;
             x ^= x >> shift;
-            key = mix64(key);
+            key = key.rotate_right(17);
         }
         if x < n {
             return x;
@@ -234,7 +234,7 @@ pub fn permutation_element(i: u32, n: u32, seed: u32) -> u32 {
 }
 
 /// Star discrepancy of points in the unit square: the largest difference between the area of a box at the
-/// origin and the share of the points in it. Exact, O(n^2 log n).
+/// origin and the share of the points in it. Exact, in O(n^2) steps.
 #[must_use]
 pub fn star_discrepancy(points: &[Point2]) -> f64 {
     let n = points.len() as f64;

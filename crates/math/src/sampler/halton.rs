@@ -15,7 +15,10 @@ pub(super) struct Halton {
 
 impl Halton {
     pub(super) fn new(seed: u64, sample_index: u64) -> Self {
-        Self { seed, index: sample_index, dimension: 0 }
+        // An f32 does not tell larger indices apart: beyond 2^24 samples a new independent sequence starts.
+        let (round, index) = (sample_index >> 24, sample_index & 0xff_ffff);
+        let seed = if round == 0 { seed } else { mix64(seed ^ mix64(round)) };
+        Self { seed, index, dimension: 0 }
     }
 
     pub(super) fn next_1d(&mut self) -> f32 {

@@ -51,7 +51,7 @@ impl SphericalRectangle {
         let (g0, g1, g2, g3) = (angle(n0, n1), angle(n1, n2), angle(n2, n3), angle(n3, n0));
         let k = std::f64::consts::TAU - g2 - g3;
         let solid_angle = g0 + g1 - k;
-        if !(solid_angle > 1e-10) || z0 == 0.0 {
+        if z0 == 0.0 || solid_angle.is_nan() || solid_angle <= 1e-10 {
             return None;
         }
         Some(Self {

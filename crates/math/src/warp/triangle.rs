@@ -65,7 +65,7 @@ impl SphericalTriangle {
         // tan(area / 2) = |a . (b x c)| / (1 + a.b + b.c + c.a)  [van Oosterom and Strackee 1983]
         let triple = a.dot((b - a).cross(c - a)).abs();
         let solid_angle = 2.0 * triple.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a));
-        if !(solid_angle > 1e-12) {
+        if solid_angle.is_nan() || solid_angle <= 1e-12 {
             return None;
         }
         let n_ab = a.cross(b).try_normalize()?;
