@@ -1,6 +1,6 @@
 //! Materials: what a surface is made of, before a point on it is known.
 //!
-//! A material holds textures; [`Materials::bsdf`] evaluates them at a point, perturbs the shading frame and returns a
+//! A material holds textures; [`Material::bsdf`] evaluates them at a point, perturbs the shading frame and returns a
 //! [`Bsdf`]. Names, parameters and defaults are those of pbrt-v4.
 
 mod bump;
@@ -25,7 +25,6 @@ mod thin_dielectric;
 mod tests;
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use etendue_geometry::SurfacePoint;
 use etendue_math::{Normal3, Vector3};
@@ -41,7 +40,7 @@ pub use diffuse_transmission::DiffuseTransmissionMaterial;
 pub use index::RefractiveIndex;
 pub use metal::Metal;
 pub use mix::MixMaterial;
-pub use normal_map::{NormalMap, NormalMapId};
+pub use normal_map::NormalMap;
 pub use perturbation::Perturbation;
 pub use roughness::{Roughness, RoughnessScale};
 pub use thin_dielectric::ThinDielectricMaterial;
@@ -51,15 +50,11 @@ use crate::diagnostics::nearest_name;
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::{SpectrumTexture, TextureContext, Textures};
 
-/// Index of a material in [`Materials`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MaterialId(pub u32);
-
 /// The kinds of material.
 ///
 /// To add one: write a file with a plain struct, `PARAMETERS`, `build` and `bsdf` as in `diffuse.rs`, add a variant here,
 /// follow the compiler through the matches below, and add it to [`MATERIALS`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Material {
     /// Matte.
     Diffuse(DiffuseMaterial),
@@ -166,7 +161,7 @@ impl MaterialContext {
     /// From a point of a surface.
     #[inline]
     #[must_use]
-    pub fn new(surface: &SurfacePoint, texture: TextureContext, wo: Vector3) -> Self {
+    pub fn new(texture: TextureContext, surface: &SurfacePoint, wo: Vector3) -> Self {
         Self {
             texture,
             wo,
@@ -188,178 +183,96 @@ impl MaterialContext {
     }
 }
 
-/// All materials of a scene, with the normal maps they use.
-#[derive(Clone, Debug, Default)]
-pub struct Materials {
-    materials: Vec<Material>,
-    normal_maps: Vec<NormalMap>,
-    normal_map_files: HashMap<String, NormalMapId>,
-}
-
-impl Materials {
-    /// No materials.
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// Adds a material. A mixture may only name materials that were added before it.
-    pub fn add(&mut self, material: Material) -> MaterialId {
-        if let Material::Mix(mix) = material {
-            assert!(
-                mix.materials.iter().all(|id| (id.0 as usize) < self.materials.len()),
-                "mixture of unknown materials"
-            );
-        }
-        self.materials.push(material);
-        MaterialId(self.materials.len() as u32 - 1)
-    }
-
-    /// Adds pbrt's default material, a grey diffuse one.
-    pub fn add_default(&mut self) -> MaterialId {
-        self.add(Material::Diffuse(DiffuseMaterial {
+impl Default for Material {
+    /// The material of shapes that name none: grey and diffuse.
+    fn default() -> Self {
+        Self::Diffuse(DiffuseMaterial {
             reflectance: SpectrumTexture::Constant(Spectrum::Constant(0.5)),
             perturbation: Perturbation::None,
-        }))
+        })
     }
+}
 
-    /// Adds a normal map.
-    pub fn add_normal_map(&mut self, map: NormalMap) -> NormalMapId {
-        self.normal_maps.push(map);
-        NormalMapId(self.normal_maps.len() as u32 - 1)
-    }
-
-    /// Number of materials.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.materials.len()
-    }
-
-    /// True if there are no materials.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.materials.is_empty()
-    }
-
-    /// A material.
-    #[inline]
-    #[must_use]
-    pub fn get(&self, id: MaterialId) -> &Material {
-        &self.materials[id.0 as usize]
-    }
-
-    /// True if the surface does not exist for light; a mixture is never.
-    #[inline]
-    #[must_use]
-    pub fn is_interface(&self, id: MaterialId) -> bool {
-        matches!(self.get(id), Material::Interface)
-    }
-
-    #[inline]
-    fn normal_map(&self, id: NormalMapId) -> &NormalMap {
-        &self.normal_maps[id.0 as usize]
-    }
-
-    fn load_normal_map(&mut self, p: &mut Parameters<'_, '_>, file: &str) -> Option<NormalMapId> {
-        if let Some(id) = self.normal_map_files.get(file) {
-            return Some(*id);
-        }
-        // An image that could not be read has been reported by its reader.
-        let texels = p.context.assets.images.get(file)?;
-        let Some(map) = NormalMap::new(Arc::clone(texels)) else {
-            let span = p.span_of("normalmap");
-            p.diagnostics().error(span, format!("the normal map \"{file}\" needs three channels"));
-            return None;
-        };
-        let id = self.add_normal_map(map);
-        self.normal_map_files.insert(file.to_owned(), id);
-        Some(id)
-    }
-
-    /// The material at a point, with mixtures decided.
-    #[inline]
-    #[must_use]
-    pub fn resolve(&self, mut id: MaterialId, textures: &Textures, ctx: &MaterialContext) -> &Material {
-        // Ends, since a mixture only names materials before it.
-        loop {
-            match self.get(id) {
-                Material::Mix(mix) => id = mix.choose(textures, ctx),
-                material => return material,
+impl Material {
+    /// Builds the material that an entity describes, where `named` are those with a name defined before. Problems are
+    /// reported; `None` means that there is no material because of them.
+    pub fn build(mut p: Parameters<'_, '_>, named: &HashMap<String, Self>) -> Option<Self> {
+        let q = &mut p;
+        let material = match q.entity().type_name.as_str() {
+            "diffuse" => Self::Diffuse(DiffuseMaterial::build(q)),
+            "coateddiffuse" => Self::CoatedDiffuse(CoatedDiffuseMaterial::build(q)),
+            "conductor" => Self::Conductor(ConductorMaterial::build(q)),
+            "coatedconductor" => Self::CoatedConductor(CoatedConductorMaterial::build(q)),
+            "dielectric" => Self::Dielectric(DielectricMaterial::build(q)),
+            "thindielectric" => Self::ThinDielectric(ThinDielectricMaterial::build(q)),
+            "diffusetransmission" => Self::DiffuseTransmission(DiffuseTransmissionMaterial::build(q)),
+            "mix" => Self::Mix(MixMaterial::build(q, named)?),
+            "interface" | "none" | "" => Self::Interface,
+            other => {
+                report_unknown(q, other);
+                return None;
             }
+        };
+        p.finish();
+        Some(material)
+    }
+
+    /// True if the surface does not exist for light anywhere.
+    #[inline]
+    #[must_use]
+    pub const fn is_interface(&self) -> bool {
+        matches!(self, Self::Interface)
+    }
+
+    /// This material, or the part of a mixture that is at the point.
+    #[inline]
+    #[must_use]
+    pub fn resolve(&self, textures: &Textures, ctx: &MaterialContext) -> &Self {
+        let mut material = self;
+        while let Self::Mix(mix) = material {
+            material = mix.choose(textures, ctx);
         }
+        material
     }
 
     /// How the material scatters light at a point; `None` where light passes as if there were no surface. Wavelengths
     /// but the first are given up where refraction depends on them.
     #[must_use]
-    pub fn bsdf(
-        &self,
-        id: MaterialId,
-        textures: &Textures,
-        ctx: &MaterialContext,
-        lambda: &mut Wavelengths,
-    ) -> Option<Bsdf> {
-        let material = self.resolve(id, textures, ctx);
-        let perturbed = material.perturbation().apply(self, textures, ctx);
-        let ctx = &perturbed;
+    pub fn bsdf(&self, textures: &Textures, ctx: &MaterialContext, lambda: &mut Wavelengths) -> Option<Bsdf> {
+        let material = self.resolve(textures, ctx);
+        let ctx = &material.perturbation()?.apply(textures, ctx);
         let kind = match material {
-            Material::Diffuse(material) => material.bsdf(textures, ctx, lambda),
-            Material::CoatedDiffuse(material) => material.bsdf(textures, ctx, lambda),
-            Material::Conductor(material) => material.bsdf(textures, ctx, lambda),
-            Material::CoatedConductor(material) => material.bsdf(textures, ctx, lambda),
-            Material::Dielectric(material) => material.bsdf(textures, ctx, lambda),
-            Material::ThinDielectric(material) => material.bsdf(textures, lambda),
-            Material::DiffuseTransmission(material) => material.bsdf(textures, ctx, lambda),
-            Material::Mix(_) | Material::Interface => return None,
+            Self::Diffuse(material) => material.bsdf(textures, ctx, lambda),
+            Self::CoatedDiffuse(material) => material.bsdf(textures, ctx, lambda),
+            Self::Conductor(material) => material.bsdf(textures, ctx, lambda),
+            Self::CoatedConductor(material) => material.bsdf(textures, ctx, lambda),
+            Self::Dielectric(material) => material.bsdf(textures, ctx, lambda),
+            Self::ThinDielectric(material) => material.bsdf(textures, lambda),
+            Self::DiffuseTransmission(material) => material.bsdf(textures, ctx, lambda),
+            Self::Mix(_) | Self::Interface => return None,
         };
         Some(Bsdf::new(ctx.ns, ctx.ng, ctx.shading_dpdu, kind))
     }
-}
 
-impl Material {
-    /// What perturbs the shading normal.
+    /// What perturbs the shading normal; `None` for materials that have no normal of their own.
     #[must_use]
-    pub const fn perturbation(&self) -> Perturbation {
+    pub const fn perturbation(&self) -> Option<&Perturbation> {
         match self {
-            Self::Diffuse(material) => material.perturbation,
-            Self::CoatedDiffuse(material) => material.perturbation,
-            Self::Conductor(material) => material.perturbation,
-            Self::CoatedConductor(material) => material.perturbation,
-            Self::Dielectric(material) => material.perturbation,
-            Self::ThinDielectric(material) => material.perturbation,
-            Self::DiffuseTransmission(material) => material.perturbation,
-            Self::Mix(_) | Self::Interface => Perturbation::None,
+            Self::Diffuse(material) => Some(&material.perturbation),
+            Self::CoatedDiffuse(material) => Some(&material.perturbation),
+            Self::Conductor(material) => Some(&material.perturbation),
+            Self::CoatedConductor(material) => Some(&material.perturbation),
+            Self::Dielectric(material) => Some(&material.perturbation),
+            Self::ThinDielectric(material) => Some(&material.perturbation),
+            Self::DiffuseTransmission(material) => Some(&material.perturbation),
+            Self::Mix(_) | Self::Interface => None,
         }
     }
-}
 
-/// Builds the material of an entity and adds it, where `names` are the named materials so far. Problems are reported;
-/// `None` means that there is no material because of them.
-pub fn build_material(
-    mut p: Parameters<'_, '_>,
-    materials: &mut Materials,
-    names: &HashMap<String, MaterialId>,
-) -> Option<MaterialId> {
-    let p_ref = &mut p;
-    let material = match p_ref.entity().type_name.as_str() {
-        "diffuse" => Material::Diffuse(DiffuseMaterial::build(p_ref, materials)),
-        "coateddiffuse" => Material::CoatedDiffuse(CoatedDiffuseMaterial::build(p_ref, materials)),
-        "conductor" => Material::Conductor(ConductorMaterial::build(p_ref, materials)),
-        "coatedconductor" => Material::CoatedConductor(CoatedConductorMaterial::build(p_ref, materials)),
-        "dielectric" => Material::Dielectric(DielectricMaterial::build(p_ref, materials)),
-        "thindielectric" => Material::ThinDielectric(ThinDielectricMaterial::build(p_ref, materials)),
-        "diffusetransmission" => {
-            Material::DiffuseTransmission(DiffuseTransmissionMaterial::build(p_ref, materials))
-        }
-        "mix" => Material::Mix(MixMaterial::build(p_ref, names)?),
-        "interface" | "none" | "" => Material::Interface,
-        other => {
-            report_unknown(p_ref, other);
-            return None;
-        }
-    };
-    p.finish();
-    Some(materials.add(material))
+    /// Number of mixtures inside one another.
+    fn depth(&self) -> u64 {
+        if let Self::Mix(mix) = self { mix.depth() } else { 0 }
+    }
 }
 
 fn report_unknown(p: &mut Parameters<'_, '_>, name: &str) {

@@ -1,14 +1,15 @@
 //! Perturbed shading frames, which make a flat surface look as if it had small relief.
 
+use std::sync::Arc;
+
+use super::MaterialContext;
+use super::bump::bump;
+use super::normal_map::NormalMap;
+use crate::parameters::Parameters;
 use crate::texture::{FloatTexture, Textures};
 
-use super::bump::bump;
-use super::normal_map::NormalMapId;
-use super::{MaterialContext, Materials};
-use crate::parameters::Parameters;
-
 /// What perturbs the shading normal.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Perturbation {
     /// Nothing.
     #[default]
@@ -16,34 +17,34 @@ pub enum Perturbation {
     /// The slope of a height field, in metres along the normal.
     Bump(FloatTexture),
     /// An image of normals.
-    NormalMap(NormalMapId),
+    NormalMap(NormalMap),
 }
 
 impl Perturbation {
-    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
+    pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
         let height = p.float_texture_opt("displacement");
-        if let Some(file) = p.string_opt("normalmap") {
-            if height.is_some() {
-                let span = p.span_of("displacement");
-                p.diagnostics().warning(span, "\"displacement\" is ignored: \"normalmap\" is given too");
-            }
-            return materials.load_normal_map(p, &file).map_or(Self::None, Self::NormalMap);
+        let Some(file) = p.string_opt("normalmap") else { return height.map_or(Self::None, Self::Bump) };
+        if height.is_some() {
+            let span = p.span_of("displacement");
+            p.diagnostics().warning(span, "\"displacement\" is ignored: \"normalmap\" is given too");
         }
-        height.map_or(Self::None, Self::Bump)
+        // An image that could not be read has been reported by its reader.
+        let Some(texels) = p.context.assets.images.get(&file) else { return Self::None };
+        let map = NormalMap::new(Arc::clone(texels));
+        if map.is_none() {
+            let span = p.span_of("normalmap");
+            p.diagnostics().error(span, format!("the normal map \"{file}\" needs three channels"));
+        }
+        map.map_or(Self::None, Self::NormalMap)
     }
 
     /// The context with the perturbed shading frame.
     #[inline]
-    pub(super) fn apply(
-        &self,
-        materials: &Materials,
-        textures: &Textures,
-        ctx: &MaterialContext,
-    ) -> MaterialContext {
-        match *self {
+    pub(super) fn apply(&self, textures: &Textures, ctx: &MaterialContext) -> MaterialContext {
+        match self {
             Self::None => *ctx,
-            Self::Bump(height) => bump(height, textures, ctx),
-            Self::NormalMap(id) => materials.normal_map(id).perturb(ctx),
+            Self::Bump(height) => bump(*height, textures, ctx),
+            Self::NormalMap(map) => map.perturb(ctx),
         }
     }
 }
