@@ -306,7 +306,12 @@ impl Writer<'_> {
         self.indent += 1;
         self.line(&format!("\"string type\" {}", quoted(&entity.type_name)));
         self.indent -= 1;
-        self.parameters(own);
+        self.indent += 1;
+        // An unnamed material may have a stray parameter of that name, which means nothing.
+        for parameter in own.iter().filter(|parameter| parameter.name != "type") {
+            self.parameter(parameter);
+        }
+        self.indent -= 1;
     }
 
     fn parameters(&mut self, parameters: &[Parameter]) {
