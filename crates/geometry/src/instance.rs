@@ -3,6 +3,9 @@
 //! Rays are carried to the space of the group in double precision and rounded once, hits are carried back.
 //! Directions are not normalised, so that t keeps its meaning.
 
+#[cfg(test)]
+mod tests;
+
 use etendue_math::{AnimatedTransform, Bounds3, Motion, Ray, Vector3};
 use glam::{DAffine3, DVec3};
 

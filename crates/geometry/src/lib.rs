@@ -19,6 +19,9 @@ mod subdivision;
 mod bvh;
 mod double;
 
+#[cfg(test)]
+mod test_support;
+
 pub use builder::GeometryBuilder;
 pub use geometry::{Geometry, GeometryCounts};
 pub use hit::{GeometryId, Hit, NO_INSTANCE, ObjectId, Reference, ShapeSample, SurfacePoint};

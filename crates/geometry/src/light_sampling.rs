@@ -4,6 +4,9 @@
 //! triangles and rectangles uniformly in solid angle where that is accurate, everything else by area. Only for
 //! entities for which [`Geometry::can_emit`] holds.
 
+#[cfg(test)]
+mod tests;
+
 use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray, Vector3};
 
 use crate::geometry::Geometry;

@@ -1,5 +1,8 @@
 //! Indexed meshes of triangles and of bilinear patches.
 
+#[cfg(test)]
+mod tests;
+
 use std::fmt;
 
 use etendue_math::{Normal3, Point2, Point3, Vector3};

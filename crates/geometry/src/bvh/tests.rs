@@ -1,1 +1,238 @@
+use etendue_math::{Bounds3, Point3, Ray, Rng, Vector3};
 
+use super::build::Box3;
+use super::node::{Node, leaf, leaf_range};
+use super::{BuildPrimitive, Bvh, PrimitiveRef, TraversalRay, build, intersect_triangle};
+use crate::test_support::{any, ball, brute_force, direction, point_in_cube, ray, single, soup};
+use crate::{Hit, Shape, TriangleMesh};
+use etendue_math::Transform;
+
+fn slab(min: [f32; 3], max: [f32; 3], ray: &Ray, t_max: f32) -> bool {
+    let mut node = Node::EMPTY;
+    node.set(3, &Box3 { min, max }, 7);
+    let bounds =
+        Bounds3 { min: Point3::new(min[0], min[1], min[2]), max: Point3::new(max[0], max[1], max[2]) };
+    let prepared = TraversalRay::new(ray, &bounds).expect("the ray is finite");
+    node.test(&prepared, t_max).0 == 1 << 3
+}
+
+/// SPEC ACC-7: a box is met exactly where three slabs overlap, also for directions along an axis.
+#[test]
+fn slabs_are_met_by_rays_along_axes_grazing_and_inside() {
+    let check = |origin: [f32; 3], direction: [f32; 3], t_max: f32, expected: bool| {
+        let ray = Ray::new(
+            Point3::new(origin[0], origin[1], origin[2]),
+            Vector3::new(direction[0], direction[1], direction[2]),
+        );
+        assert_eq!(slab([0.0; 3], [1.0; 3], &ray, t_max), expected, "{ray:?} up to {t_max}");
+    };
+    check([0.5, 0.5, -1.0], [0.0, 0.0, 1.0], f32::INFINITY, true);
+    check([0.5, 0.5, -1.0], [0.0, 0.0, -1.0], f32::INFINITY, false);
+    check([0.5, 0.5, -1.0], [-0.0, -0.0, 1.0], f32::INFINITY, true);
+    check([0.5, 0.5, -1.0], [0.0, 0.0, 1.0], 0.9, false);
+    check([1.5, 0.5, -1.0], [0.0, 0.0, 1.0], f32::INFINITY, false);
+    // Inside, and inside a plane of the box.
+    check([0.5, 0.5, 0.5], [1.0, 0.0, 0.0], f32::INFINITY, true);
+    check([1.0, 0.5, -1.0], [0.0, 0.0, 1.0], f32::INFINITY, true);
+    check([0.0, 0.0, -1.0], [0.0, -0.0, 1.0], f32::INFINITY, true);
+    check([1.0, 1.0, -1.0], [-0.0, 0.0, 1.0], f32::INFINITY, true);
+    // Through an edge and past it.
+    check([-1.0, 0.0, 0.5], [1.0, 1.01, 0.0], f32::INFINITY, false);
+    check([-1.0, 0.0, 0.5], [1.0, 1.0, 0.0], f32::INFINITY, true);
+    check([-1.0, -1.0, 0.5], [1.0, 1.0, 0.0], f32::INFINITY, true);
+    check([-1.0, 2.0, 0.5], [1.0, -1.0, 0.0], f32::INFINITY, true);
+    check([0.5, 0.5, -1.0], [1e-30, 1e-42, 1.0], f32::INFINITY, true);
+}
+
+/// A ray without direction or with NaN meets nothing, and finds that out at once.
+#[test]
+fn rays_that_are_not_finite_meet_nothing() {
+    let (geometry, _) = single(Shape::Triangles(ball(2)), Transform::IDENTITY, false);
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let z = Vector3::new(0.0, 0.0, 1.0);
+        assert!(geometry.intersect(&Ray::new(Point3::new(bad, 0.0, 0.0), z), 1e9, &any).is_none());
+        let ray = Ray::new(Point3::ORIGIN, Vector3::new(0.0, bad, 1.0));
+        assert!(geometry.intersect(&ray, 1e9, &any).is_none());
+    }
+    assert!(!geometry.occluded(&Ray::new(Point3::ORIGIN, Vector3::default()), 1e9, &any));
+}
+
+/// Leaves survive the packing into 32 bits.
+#[test]
+fn leaves_are_packed_without_loss() {
+    for (kind, first, n) in [(1, 0, 1), (1, (1 << 27) - 1, 8), (2, 12_345, 3)] {
+        let code = leaf(kind, first, n);
+        assert_eq!(code >> 30, kind);
+        assert_eq!(leaf_range(code), first..first + n);
+    }
+}
+
+/// SPEC ACC-2, GEO-2: the hierarchy finds exactly what testing every triangle finds.
+#[test]
+fn accelerated_hits_are_those_of_brute_force() {
+    for (n, size) in [(1, 0.5), (7, 0.5), (40, 0.3), (1500, 0.08), (3000, 0.5)] {
+        let (geometry, _) = single(Shape::Triangles(soup(n, size, 7)), Transform::IDENTITY, false);
+        let mut rng = Rng::new(11, n as u64);
+        let mut n_hits = 0;
+        for _ in 0..1000 {
+            let ray = ray(&mut rng, 1.5);
+            let expected = brute_force(&geometry, &ray);
+            let found = geometry.intersect(&ray, f32::INFINITY, &any);
+            assert_eq!(found.map(|hit| hit.t), expected, "{n} triangles, {ray:?}");
+            assert_eq!(geometry.occluded(&ray, f32::INFINITY, &any), expected.is_some());
+            if let Some(t) = expected {
+                n_hits += 1;
+                assert!(geometry.intersect(&ray, t, &any).is_none(), "t must lie below t_max");
+                assert!(!geometry.occluded(&ray, t, &any));
+                assert!(geometry.occluded(&ray, t.next_up(), &any));
+            }
+        }
+        assert!(n == 1 || n_hits > 20, "{n} triangles, {n_hits} hits");
+    }
+}
+
+/// Axis-parallel rays through a regular grid run along edges and box planes; they must hit all the same.
+#[test]
+fn rays_along_grid_lines_hit() {
+    const N: u32 = 16;
+    let mut mesh = TriangleMesh::default();
+    for j in 0..=N {
+        for i in 0..=N {
+            mesh.positions.push(Point3::new(i as f32, j as f32, 0.25 * (i as f32)));
+        }
+    }
+    for j in 0..N {
+        for i in 0..N {
+            let a = j * (N + 1) + i;
+            mesh.indices.push([a, a + 1, a + N + 2]);
+            mesh.indices.push([a, a + N + 2, a + N + 1]);
+        }
+    }
+    let (geometry, _) = single(Shape::Triangles(mesh), Transform::IDENTITY, false);
+    for j in 0..=4 * N {
+        for i in 0..=4 * N {
+            let (x, y) = (i as f32 * 0.25, j as f32 * 0.25);
+            for (z, direction) in [(-7.0, 1.0), (9.0, -1.0)] {
+                let ray = Ray::new(Point3::new(x, y, z), Vector3::new(0.0, -0.0, direction));
+                let hit = geometry.intersect(&ray, f32::INFINITY, &any);
+                let hit = hit.unwrap_or_else(|| panic!("nothing at {x}, {y} from {z}"));
+                assert!((z + direction * hit.t - 0.25 * x).abs() < 1e-5);
+            }
+        }
+    }
+}
+
+/// SPEC GEO-8: no ray leaves a closed surface, not even through an edge or a vertex.
+#[test]
+fn closed_surfaces_are_watertight() {
+    for (name, mesh) in [("ball", ball(4)), ("cube", crate::test_support::cube())] {
+        for offset in [Vector3::default(), Vector3::new(37.1, -12.7, 81.3)] {
+            let (geometry, _) = single(Shape::Triangles(mesh.clone()), Transform::translate(offset), false);
+            let mut rng = Rng::new(3, 5);
+            for i in 0..50_000_usize {
+                let origin = point_in_cube(&mut rng, 0.3) + offset;
+                let target = match i % 3 {
+                    0 => origin + direction(&mut rng),
+                    1 => mesh.positions[i % mesh.positions.len()] + offset,
+                    _ => {
+                        let [a, b, _] = mesh.indices[i % mesh.indices.len()];
+                        let t = if i % 2 == 0 { 0.5 } else { rng.next_f32() };
+                        mesh.positions[a as usize].lerp(mesh.positions[b as usize], t) + offset
+                    }
+                };
+                let ray = Ray::new(origin, target - origin);
+                assert!(geometry.intersect(&ray, f32::INFINITY, &any).is_some(), "{name} leaks: {ray:?}");
+                assert!(geometry.occluded(&ray, f32::INFINITY, &any), "{name} leaks: {ray:?}");
+            }
+        }
+    }
+}
+
+/// Triangles without area or with corners that are no numbers do not exist for rays.
+#[test]
+fn degenerate_triangles_are_never_hit() {
+    let p = Point3::new;
+    let mut mesh = soup(200, 0.3, 5);
+    let n = mesh.positions.len() as u32;
+    mesh.positions.extend([
+        p(0.0, 0.0, 0.0),
+        p(1.0, 1.0, 1.0),
+        p(2.0, 2.0, 2.0),
+        p(f32::NAN, 0.0, 0.0),
+        p(f32::INFINITY, 1.0, 0.0),
+    ]);
+    let n_good = mesh.indices.len();
+    for bad in [[0, 1, 2], [0, 0, 1], [1, 1, 1], [0, 1, 3], [0, 3, 4], [0, 2, 4]] {
+        mesh.indices.push(bad.map(|i| n + i));
+    }
+    let (geometry, _) = single(Shape::Triangles(mesh), Transform::IDENTITY, false);
+    let bounds = geometry.bounds();
+    assert!(bounds.min.is_finite() && bounds.max.x < 1.5, "{bounds:?}");
+    let mut rng = Rng::new(1, 1);
+    for _ in 0..2000 {
+        let ray = ray(&mut rng, 1.0);
+        if let Some(hit) = geometry.intersect(&ray, f32::INFINITY, &any) {
+            assert!((hit.primitive as usize) < n_good);
+            assert!(hit.t.is_finite());
+        }
+    }
+    assert!(
+        intersect_triangle(&Ray::new(p(0.0, 0.0, -1.0), Vector3::new(0.0, 0.0, 1.0)), &[[0.0; 3]; 3])
+            .is_none()
+    );
+}
+
+/// A refused candidate lets the ray pass to what lies behind.
+#[test]
+fn the_filter_sees_every_candidate_and_may_refuse_it() {
+    let (geometry, _) = single(Shape::Triangles(crate::test_support::cube()), Transform::IDENTITY, false);
+    let ray = Ray::new(Point3::new(0.3, 0.2, 5.0), Vector3::new(0.0, 0.0, -1.0));
+    let near = geometry.intersect(&ray, f32::INFINITY, &any).expect("the cube is ahead");
+    assert!((near.t - 4.0).abs() < 1e-6);
+    let refuse = |hit: &Hit| hit.primitive != near.primitive;
+    let far = geometry.intersect(&ray, f32::INFINITY, &refuse).expect("the back of the cube");
+    assert!((far.t - 6.0).abs() < 1e-6);
+    assert!(geometry.occluded(&ray, f32::INFINITY, &refuse));
+    assert!(!geometry.occluded(&ray, f32::INFINITY, &|_| false));
+}
+
+fn triangles(n: usize, position: impl Fn(usize) -> [[f32; 3]; 3]) -> Bvh {
+    let vertices: Vec<[[f32; 3]; 3]> = (0..n).map(position).collect();
+    let reference = |i: usize| PrimitiveRef { geometry: 0, primitive: i as u32 };
+    let primitives =
+        vertices.iter().enumerate().map(|(i, v)| BuildPrimitive::triangle(reference(i), v)).collect();
+    build(primitives, &|reference: PrimitiveRef| vertices[reference.primitive as usize])
+}
+
+/// Trees that defeat the heuristic still have a bounded depth: equal boxes, and sizes that grow geometrically.
+#[test]
+fn degenerate_distributions_build() {
+    let same = triangles(1000, |_| [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    assert!(same.n_nodes() < 1000);
+    let growing = triangles(1000, |i| {
+        let s = 1.15_f32.powi(i as i32 - 500);
+        [[s, 0.0, 0.0], [s, s, 0.0], [s, 0.0, s]]
+    });
+    assert!(growing.n_nodes() < 1000);
+}
+
+/// SPEC PAR: the tree does not depend on the number of threads.
+#[test]
+fn the_tree_is_the_same_for_any_number_of_threads() {
+    let mesh = soup(40_000, 0.02, 9);
+    let vertices = |i: usize| mesh.indices[i].map(|v| mesh.positions[v as usize]).map(|p| [p.x, p.y, p.z]);
+    let build_with = |n_threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().expect("threads start");
+        pool.install(|| format!("{:?}", triangles(mesh.indices.len(), vertices)))
+    };
+    assert!(build_with(1) == build_with(3));
+}
+
+/// The hierarchy of a large mesh needs at most 110 bytes per triangle.
+#[test]
+fn memory_per_triangle_is_small() {
+    let (geometry, _) = single(Shape::Triangles(ball(7)), Transform::IDENTITY, false);
+    let n = geometry.counts().n_triangles;
+    let bytes = geometry.hierarchy_bytes() as f64 / n as f64;
+    assert!(n == 8 << 14 && bytes < 110.0, "{bytes} bytes for each of {n} triangles");
+}
