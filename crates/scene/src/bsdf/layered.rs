@@ -345,7 +345,7 @@ impl Layered {
         if !sample.is_specular() {
             sample.pdf_w = self.pdf(wo, sample.wi, lobes);
         }
-        sample.wi = sample.wi * side;
+        sample.wi *= side;
         (sample.wi.z != 0.0).then_some(sample)
     }
 
@@ -475,7 +475,7 @@ fn survives_roulette(beta: &mut Sampled, depth: u16, rng: &mut Rng) -> bool {
     if rng.next_f32() >= survival {
         return false;
     }
-    *beta = *beta / survival;
+    *beta /= survival;
     true
 }
 

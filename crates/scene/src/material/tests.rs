@@ -1,1 +1,390 @@
+//! Materials from parameters to scattering: defaults, meanings and reports.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use etendue_image::Texels;
+use etendue_math::{Normal3, Point2, Point3, Rng, Vector3};
+use etendue_spectrum::{Sampled, Spectrum, Wavelengths};
+
+use super::*;
+use crate::assets::Assets;
+use crate::bsdf::fresnel::fresnel_conductor;
+use crate::bsdf::{Base, BsdfKind, Lobes, TransportMode};
+use crate::diagnostics::Diagnostics;
+use crate::document::{Entity, Value};
+use crate::parameters::BuildContext;
+use crate::texture::{Bilerp, FloatTexture, FloatTextureNode, Mapping2};
+
+/// What a build needs and makes.
+#[derive(Default)]
+struct Fixture {
+    assets: Assets,
+    textures: Textures,
+    named: HashMap<String, Material>,
+    float_textures: HashMap<String, FloatTexture>,
+}
+
+impl Fixture {
+    fn build(&mut self, entity: &Entity) -> (Option<Material>, Diagnostics) {
+        let mut context = BuildContext::new(&self.assets);
+        context.spectra = self.textures.spectra.clone();
+        context.float_textures = self.float_textures.clone();
+        let material = Material::build(Parameters::new(entity, &mut context), &self.named);
+        self.textures.spectra = context.spectra;
+        (material, context.diagnostics)
+    }
+
+    #[track_caller]
+    fn build_clean(&mut self, entity: &Entity) -> Material {
+        let (material, diagnostics) = self.build(entity);
+        assert!(diagnostics.list().is_empty(), "{:?}", diagnostics.list());
+        material.expect("no problem was reported")
+    }
+
+    #[track_caller]
+    fn kind(&mut self, entity: &Entity) -> BsdfKind {
+        let material = self.build_clean(entity);
+        let mut lambda = Wavelengths::sample_visible(0.3);
+        *material.bsdf(&self.textures, &context(), &mut lambda).expect("a material that scatters").kind()
+    }
+
+    /// A height that grows by `slope` per unit of u.
+    fn ramp(&mut self, slope: f32) -> FloatTexture {
+        let mapping = Mapping2::Uv { su: 1.0, sv: 1.0, du: 0.0, dv: 0.0 };
+        self.textures
+            .add_float(FloatTextureNode::Bilerp(Bilerp { mapping, corners: [0.0, 0.0, slope, slope] }))
+    }
+}
+
+/// A point on the plane z = 0, where a unit of u is 2 m along x and a unit of v 3 m along y.
+fn context() -> MaterialContext {
+    let n = Normal3::new(0.0, 0.0, 1.0);
+    MaterialContext {
+        texture: TextureContext {
+            p: Point3::new(0.3, 0.2, 0.0),
+            n,
+            uv: Point2::new(0.4, 0.6),
+            ..TextureContext::default()
+        },
+        wo: Vector3::new(0.0, 0.6, 0.8),
+        ng: n,
+        ns: n,
+        shading_dpdu: Vector3::new(2.0, 0.0, 0.0),
+        shading_dpdv: Vector3::new(0.0, 3.0, 0.0),
+        dndu: Vector3::splat(0.0),
+        dndv: Vector3::splat(0.0),
+    }
+}
+
+fn floats(value: f32) -> Value {
+    Value::Floats(vec![value])
+}
+
+fn named_spectrum(name: &str) -> Value {
+    Value::SpectrumNames(vec![name.to_owned()])
+}
+
+fn plain(name: &str) -> Entity {
+    Entity::new(name)
+}
+
+/// A material without parameters is what pbrt-v4 makes of it.
+#[test]
+fn defaults() {
+    let mut fixture = Fixture::default();
+    let BsdfKind::Diffuse(diffuse) = fixture.kind(&plain("diffuse")) else { panic!("not diffuse") };
+    assert_eq!(diffuse.reflectance, Sampled::splat(0.5));
+
+    let BsdfKind::DiffuseTransmission(sheet) = fixture.kind(&plain("diffusetransmission")) else {
+        panic!("not a sheet")
+    };
+    assert_eq!((sheet.reflectance, sheet.transmittance), (Sampled::splat(0.25), Sampled::splat(0.25)));
+
+    let BsdfKind::Dielectric(glass) = fixture.kind(&plain("dielectric")) else { panic!("not glass") };
+    assert!(glass.eta == 1.5 && glass.microfacets.is_smooth());
+
+    let BsdfKind::ThinDielectric(pane) = fixture.kind(&plain("thindielectric")) else { panic!("not a pane") };
+    assert_eq!(pane.eta, 1.5);
+
+    let BsdfKind::Conductor(copper) = fixture.kind(&plain("conductor")) else { panic!("not metal") };
+    assert!(copper.microfacets.is_smooth() && copper.k.min_value() > 1.5, "{copper:?}");
+
+    let BsdfKind::Layered(plastic) = fixture.kind(&plain("coateddiffuse")) else { panic!("not coated") };
+    assert!(plastic.coat.eta == 1.5 && plastic.coat.microfacets.is_smooth());
+    assert_eq!((plastic.thickness, plastic.g, plastic.albedo), (0.01, 0.0, Sampled::ZERO));
+    assert_eq!((plastic.max_depth, plastic.n_samples), (10, 1));
+
+    // The coat is what the metal sees: its indices are divided by that of the coat.
+    let BsdfKind::Layered(lacquer) = fixture.kind(&plain("coatedconductor")) else { panic!("not coated") };
+    let Base::Conductor(base) = lacquer.base else { panic!("not metal") };
+    assert!((base.eta[0] * 1.5 - copper.eta[0]).abs() < 1e-5 && (base.k[0] * 1.5 - copper.k[0]).abs() < 1e-5);
+
+    let interface = fixture.build_clean(&plain("interface"));
+    let mut lambda = Wavelengths::sample_visible(0.3);
+    assert!(interface.is_interface());
+    assert!(interface.bsdf(&fixture.textures, &context(), &mut lambda).is_none());
+    assert_eq!(fixture.build_clean(&plain("diffuse")), Material::default());
+}
+
+/// Every parameter in the documentation is one that the builder knows, and no other is.
+#[test]
+fn documented_parameters_are_the_known_ones() {
+    for spec in MATERIALS {
+        let mut fixture = Fixture::default();
+        fixture.named.insert("a".to_owned(), Material::default());
+        let mut entity = plain(spec.name);
+        for parameter in spec.parameters {
+            let value = match parameter.kind {
+                "string" if parameter.name == "materials" => Value::Strings(vec!["a".to_owned(); 2]),
+                "string" => continue,
+                "bool" => Value::Bools(vec![true]),
+                "integer" => Value::Integers(vec![3]),
+                _ if parameter.name == "reflectance" && parameter.default.is_empty() => continue,
+                _ => floats(0.3),
+            };
+            entity = entity.with(parameter.name, value);
+        }
+        fixture.build_clean(&entity);
+        for name in ["unheardof", "etaa", "nosuchroughness"] {
+            let (_, diagnostics) = fixture.build(&entity.clone().with(name, floats(1.0)));
+            assert_eq!(diagnostics.list().len(), 1, "{}: {name}: {:?}", spec.name, diagnostics.list());
+        }
+        for parameter in spec.parameters {
+            assert!(!parameter.doc.is_empty() && parameter.doc.ends_with('.'), "{}", parameter.name);
+        }
+    }
+}
+
+/// Roughness is the square of alpha, or alpha itself, along each tangent.
+#[test]
+fn roughness_becomes_alpha() {
+    let mut fixture = Fixture::default();
+    let mut alpha = |entity: Entity| match fixture.kind(&entity) {
+        BsdfKind::Conductor(metal) => metal.microfacets.alpha(),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(alpha(plain("conductor").with("roughness", floats(0.25))), (0.5, 0.5));
+    let linear = plain("conductor").with("remaproughness", Value::Bools(vec![false]));
+    assert_eq!(alpha(linear.clone().with("roughness", floats(0.25))), (0.25, 0.25));
+    let brushed = linear.with("roughness", floats(0.25)).with("vroughness", floats(0.125));
+    assert_eq!(alpha(brushed), (0.25, 0.125));
+}
+
+/// A metal given by its colour reflects that colour along the normal.
+#[test]
+fn metals_by_reflectance() {
+    let mut fixture = Fixture::default();
+    for r in [0.0, 0.04, 0.5, 0.9, 0.99] {
+        let entity = plain("conductor").with("reflectance", named_spectrum("r"));
+        fixture.assets.spectra.insert("r".to_owned(), vec![[300.0, r], [900.0, r]]);
+        let BsdfKind::Conductor(metal) = fixture.kind(&entity) else { panic!("not metal") };
+        let reflected = fresnel_conductor(1.0, metal.eta, metal.k)[1];
+        assert!((reflected - r).abs() < 1e-4, "{reflected} is not {r}");
+    }
+    let both = plain("conductor").with("reflectance", floats(0.5)).with("k", floats(2.0));
+    let (_, diagnostics) = fixture.build(&both);
+    assert!(diagnostics.has_errors());
+}
+
+/// SPEC FRES-10: glass whose index falls with the wavelength turns violet light more than red light, and then a
+/// path follows one wavelength; glass with one index keeps them all.
+#[test]
+fn dispersion_gives_up_wavelengths() {
+    let mut fixture = Fixture::default();
+    let crown = |nm: f32| 1.5 + 0.0042 / (nm * 1e-3).powi(2); // Cauchy's formula, nm to µm.
+    let samples: Vec<[f32; 2]> = (36..=83).map(|i| [i as f32 * 10.0, crown(i as f32 * 10.0)]).collect();
+    let prism = fixture.build_clean(&plain("dielectric").with("eta", Value::SpectrumSamples(samples)));
+    let mut deviations = Vec::new();
+    for u in [0.02, 0.5, 0.98] {
+        let mut lambda = Wavelengths::sample_visible(u);
+        let hero = lambda.lambda_nm()[0];
+        let bsdf = prism.bsdf(&fixture.textures, &context(), &mut lambda).unwrap();
+        assert!(lambda.secondary_terminated());
+        let BsdfKind::Dielectric(glass) = bsdf.kind() else { panic!("not glass") };
+        assert!((glass.eta - crown(hero)).abs() < 2e-3, "{} at {hero}", glass.eta);
+        let wo = context().wo;
+        let sample =
+            bsdf.sample(wo, 0.5, Point2::new(0.5, 0.5), TransportMode::Radiance, Lobes::TRANSMIT).unwrap();
+        deviations.push((hero, (-wo).angle_between(sample.wi)));
+    }
+    deviations.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert!(deviations[0].1 > deviations[1].1 && deviations[1].1 > deviations[2].1, "{deviations:?}");
+
+    let plain_glass = fixture.build_clean(&plain("dielectric").with("eta", floats(1.7)));
+    let mut lambda = Wavelengths::sample_visible(0.5);
+    let _ = plain_glass.bsdf(&fixture.textures, &context(), &mut lambda);
+    assert!(!lambda.secondary_terminated());
+}
+
+/// Glass with a name has its measured index.
+#[test]
+fn named_glass() {
+    let mut fixture = Fixture::default();
+    let BsdfKind::Dielectric(glass) =
+        fixture.kind(&plain("dielectric").with("eta", named_spectrum("glass-BK7")))
+    else {
+        panic!("not glass")
+    };
+    assert!((1.50..1.54).contains(&glass.eta), "{}", glass.eta);
+}
+
+/// Albedos above 1 would make light; they are clamped, and so are scaled ones.
+#[test]
+fn albedos_are_clamped() {
+    let mut fixture = Fixture::default();
+    let sheet = plain("diffusetransmission").with("reflectance", floats(0.4)).with("scale", floats(3.0));
+    let BsdfKind::DiffuseTransmission(sheet) = fixture.kind(&sheet) else { panic!("not a sheet") };
+    assert_eq!((sheet.reflectance, sheet.transmittance), (Sampled::ONE, Sampled::splat(0.75)));
+}
+
+/// A mixture shows its second material on as large a share of points as was asked, always the same at one point.
+#[test]
+fn mixtures_have_their_share() {
+    let mut fixture = Fixture::default();
+    fixture.named.insert("matte".to_owned(), Material::default());
+    let glass = fixture.build_clean(&plain("dielectric"));
+    fixture.named.insert("glass".to_owned(), glass);
+    let names = Value::Strings(vec!["matte".to_owned(), "glass".to_owned()]);
+    let share = |fixture: &mut Fixture, material: &Material| {
+        let mut rng = Rng::new(7, 0);
+        let n = 20_000;
+        let count = (0..n)
+            .filter(|_| {
+                let mut ctx = context();
+                ctx.texture.p.x = rng.next_f32();
+                let chosen = material.resolve(&fixture.textures, &ctx);
+                assert_eq!(chosen, material.resolve(&fixture.textures, &ctx));
+                matches!(chosen, Material::Dielectric(_))
+            })
+            .count();
+        count as f32 / n as f32
+    };
+    // 4.5 standard deviations of the worst case.
+    let tolerance = (0.25_f32 / 20_000.0).sqrt() * 4.5;
+    for amount in [0.0, 0.2, 0.5, 1.0] {
+        let entity = plain("mix").with("materials", names.clone()).with("amount", floats(amount));
+        let mix = fixture.build_clean(&entity);
+        let found = share(&mut fixture, &mix);
+        assert!(
+            (found - amount).abs() <= tolerance * f32::from(amount > 0.0 && amount < 1.0),
+            "{found} {amount}"
+        );
+    }
+    // A mixture of a mixture chooses anew: a quarter, not a half or nothing.
+    let half = fixture.build_clean(&plain("mix").with("materials", names));
+    fixture.named.insert("half".to_owned(), half);
+    let nested = Value::Strings(vec!["matte".to_owned(), "half".to_owned()]);
+    let nested = fixture.build_clean(&plain("mix").with("materials", nested));
+    let found = share(&mut fixture, &nested);
+    assert!((found - 0.25).abs() < tolerance, "{found}");
+}
+
+/// Names that do not exist are reported, with the nearest that does.
+#[test]
+fn unknown_names_are_reported() {
+    let mut fixture = Fixture::default();
+    let help = |diagnostics: &Diagnostics| diagnostics.list()[0].help.clone().unwrap_or_default();
+    let (material, diagnostics) = fixture.build(&plain("difuse"));
+    assert!(material.is_none() && diagnostics.has_errors() && help(&diagnostics).contains("\"diffuse\""));
+
+    fixture.named.insert("chrome".to_owned(), Material::default());
+    let names = Value::Strings(vec!["chrome".to_owned(), "crome".to_owned()]);
+    let (material, diagnostics) = fixture.build(&plain("mix").with("materials", names));
+    assert!(material.is_none() && diagnostics.has_errors() && help(&diagnostics).contains("\"chrome\""));
+
+    let (_, diagnostics) = fixture.build(&plain("coateddiffuse").with("maxdepth", Value::Integers(vec![0])));
+    assert!(diagnostics.has_errors());
+}
+
+/// A height that rises by s per metre turns the normal by atan s against the slope.
+#[test]
+fn bumps_tilt_the_normal() {
+    let mut fixture = Fixture::default();
+    let ramp = fixture.ramp(0.5);
+    fixture.float_textures.insert("ramp".to_owned(), ramp);
+    let entity = plain("diffuse").with("displacement", Value::Texture("ramp".to_owned()));
+    let material = fixture.build_clean(&entity);
+    let mut lambda = Wavelengths::sample_visible(0.5);
+    let bsdf = material.bsdf(&fixture.textures, &context(), &mut lambda).unwrap();
+    // 0.5 m per unit of u, which is 2 m long.
+    let expected = Vector3::new(-0.25, 0.0, 1.0).normalized();
+    assert!((bsdf.ns().as_vector() - expected).length() < 1e-3, "{:?}", bsdf.ns());
+    assert_eq!(bsdf.ng(), Normal3::new(0.0, 0.0, 1.0));
+    // The same with the step of a pixel.
+    let mut ctx = context();
+    ctx.texture.dudx = 0.02;
+    let bsdf = material.bsdf(&fixture.textures, &ctx, &mut lambda).unwrap();
+    assert!((bsdf.ns().as_vector() - expected).length() < 1e-3, "{:?}", bsdf.ns());
+    // Seen from a flipped surface the normal stays on the side of the geometric one.
+    let down = Normal3::new(0.0, 0.0, -1.0);
+    let bsdf = material
+        .bsdf(&fixture.textures, &MaterialContext { ng: down, ns: down, ..ctx }, &mut lambda)
+        .unwrap();
+    assert!(bsdf.ns().z < 0.0);
+}
+
+/// Without slope, on a curved surface, a constant height keeps the normal.
+#[test]
+fn a_constant_height_keeps_the_normal() {
+    let mut fixture = Fixture::default();
+    let material = fixture.build_clean(&plain("diffuse").with("displacement", floats(0.1)));
+    let ctx =
+        MaterialContext { dndu: Vector3::new(1.0, 0.0, 0.0), dndv: Vector3::new(0.0, 0.5, 0.0), ..context() };
+    let mut lambda = Wavelengths::sample_visible(0.5);
+    let bsdf = material.bsdf(&fixture.textures, &ctx, &mut lambda).unwrap();
+    assert!((bsdf.ns().as_vector() - Vector3::new(0.0, 0.0, 1.0)).length() < 1e-6);
+}
+
+/// A normal map's blue is the normal, red the first tangent, green the second; its top row is v = 1.
+#[test]
+fn normal_maps_turn_the_normal() {
+    let encode = |n: Vector3| [0.5 * (n.x + 1.0), 0.5 * (n.y + 1.0), 0.5 * (n.z + 1.0)];
+    let tilted = Vector3::new(0.6, 0.0, 0.8);
+    let flat = Vector3::new(0.0, 0.0, 1.0);
+    let texels = Texels::from_fn(4, 4, 3, |_, y, c| encode(if y < 2 { tilted } else { flat })[c]);
+    let mut fixture = Fixture::default();
+    fixture.assets.images.insert("n.png".to_owned(), Arc::new(texels));
+    let entity = plain("diffuse").with("normalmap", Value::Strings(vec!["n.png".to_owned()]));
+    let material = fixture.build_clean(&entity);
+    let mut lambda = Wavelengths::sample_visible(0.5);
+    let mut normal_at = |v: f32| {
+        let mut ctx = context();
+        ctx.texture.uv = Point2::new(0.3, v);
+        material.bsdf(&fixture.textures, &ctx, &mut lambda).unwrap().ns().as_vector()
+    };
+    assert!((normal_at(0.75) - tilted).length() < 1e-5);
+    assert!((normal_at(0.25) - flat).length() < 1e-5);
+    // It repeats, and between rows it interpolates.
+    assert!((normal_at(-0.25) - tilted).length() < 1e-5);
+    assert!((normal_at(0.5) - (tilted + flat).normalized()).length() < 1e-4);
+    // A grey image is no normal map.
+    fixture.assets.images.insert("n.png".to_owned(), Arc::new(Texels::from_fn(1, 1, 1, |_, _, _| 0.5)));
+    assert!(fixture.build(&entity).1.has_errors());
+}
+
+/// Anisotropy follows the first tangent, also when the frame is turned.
+#[test]
+fn grooves_follow_the_tangent() {
+    let mut fixture = Fixture::default();
+    let entity = plain("conductor").with("uroughness", floats(0.01)).with("vroughness", floats(0.25));
+    let material = fixture.build_clean(&entity);
+    let ctx = MaterialContext { shading_dpdu: Vector3::new(0.0, 5.0, 0.0), ..context() };
+    let mut lambda = Wavelengths::sample_visible(0.5);
+    let bsdf = material.bsdf(&fixture.textures, &ctx, &mut lambda).unwrap();
+    assert!((bsdf.frame().x - Vector3::new(0.0, 1.0, 0.0)).length() < 1e-6);
+    let wo = Vector3::new(0.0, 0.0, 1.0);
+    let at = |x: f32, y: f32| {
+        bsdf.eval(wo, Vector3::new(x, y, 1.0).normalized(), TransportMode::Radiance, Lobes::ALL)[0]
+    };
+    assert!(at(0.4, 0.0) > 10.0 * at(0.0, 0.4));
+}
+
+/// A spectrum that ends before the path's wavelength must not make light vanish: it counts as no interface.
+#[test]
+fn a_missing_index_is_one() {
+    let fixture = Fixture::default();
+    let index = RefractiveIndex(Spectrum::Constant(0.0));
+    let mut lambda = Wavelengths::sample_visible(0.5);
+    assert_eq!(index.of_hero(&fixture.textures, &mut lambda), 1.0);
+}
