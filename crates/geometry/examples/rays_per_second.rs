@@ -67,7 +67,8 @@ fn main() {
         .collect();
     for (name, rays) in [("incoherent", &rays), ("coherent", &coherent)] {
         let start = Instant::now();
-        let n_hits = rays.iter().filter(|ray| geometry.intersect(ray, f32::INFINITY, &|_| true).is_some()).count();
+        let n_hits =
+            rays.iter().filter(|ray| geometry.intersect(ray, f32::INFINITY, &|_| true).is_some()).count();
         let nearest = rays.len() as f64 / start.elapsed().as_secs_f64();
         let start = Instant::now();
         let n_occluded = rays.iter().filter(|ray| geometry.occluded(ray, f32::INFINITY, &|_| true)).count();

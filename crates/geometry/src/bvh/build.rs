@@ -162,16 +162,18 @@ where
     let codes = if span.end - span.start >= PARALLEL_BUILD {
         build_children_in_parallel(arena, primitives, children, depth, vertices)
     } else {
-        children
+        // Leaves first, so that those of one node lie together.
+        let mut codes: Vec<u32> = children
             .iter()
             .map(|child| {
-                if child.is_leaf {
-                    append_leaf(arena, &primitives[child.start..child.end], vertices)
-                } else {
-                    node_index(build_node(arena, primitives, *child, depth + 1, vertices))
-                }
+                let own = &primitives[child.start..child.end];
+                if child.is_leaf { append_leaf(arena, own, vertices) } else { 0 }
             })
-            .collect()
+            .collect();
+        for (child, code) in children.iter().zip(&mut codes).filter(|(child, _)| !child.is_leaf) {
+            *code = node_index(build_node(arena, primitives, *child, depth + 1, vertices));
+        }
+        codes
     };
     for (slot, (child, code)) in children.iter().zip(codes).enumerate() {
         arena.nodes[index].set(slot, &child.bounds, code);

@@ -38,8 +38,8 @@ impl TriangleBlock {
     /// Puts a triangle into a place.
     pub(super) fn set(&mut self, lane: usize, reference: PrimitiveRef, triangle: &[[f32; 3]; 3]) {
         for (vertex, p) in triangle.iter().enumerate() {
-            for axis in 0..3 {
-                self.vertices[vertex * 3 + axis][lane] = p[axis];
+            for (axis, coordinate) in p.iter().enumerate() {
+                self.vertices[vertex * 3 + axis][lane] = *coordinate;
             }
         }
         self.geometry[lane] = reference.geometry;
@@ -122,10 +122,8 @@ fn edges_in_double(sheared: &Sheared, edges: &mut [[f32; 4]; 3]) {
         // A tiny value must not lose its sign.
         if rounded == 0.0 && exact != 0.0 { f32::MIN_POSITIVE.copysign(exact as f32) } else { rounded }
     };
-    for l in 0..4 {
-        edges[0][l] = edge(b, c, l);
-        edges[1][l] = edge(c, a, l);
-        edges[2][l] = edge(a, b, l);
+    for (edges, (p, q)) in edges.iter_mut().zip([(b, c), (c, a), (a, b)]) {
+        *edges = std::array::from_fn(|l| edge(p, q, l));
     }
 }
 

@@ -309,7 +309,7 @@ fn check_departures(geometry: &Geometry, transform: &Transform, rng: &mut Rng) {
         }
     }
     assert!(n_hits > 20, "{n_hits}");
-    assert!(n_missed * 500 <= n_returns, "{n_missed} of {n_returns} rays back missed");
+    assert!(n_missed * 50 <= n_returns, "{n_missed} of {n_returns} rays back missed");
 }
 
 /// Areas add up to the closed forms.
