@@ -25,7 +25,7 @@ fn folder() -> TempDir {
     write("a.spd", "400 1\n500 2\n");
     write("bad.spd", "400\n");
     let image = Image::rgb(2, 1, vec![[0.5; 3]; 2]);
-    write_image(&folder.path().join("a.pfm"), &image).expect("the image can be written");
+    write_image(folder.path().join("a.pfm"), &image).expect("the image can be written");
     folder
 }
 

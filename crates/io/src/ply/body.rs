@@ -121,35 +121,31 @@ impl<'a> Body<'a> {
 
     #[inline]
     fn number(&mut self, scalar: Scalar) -> Result<f64, Fault> {
-        match self.encoding {
-            Encoding::Ascii => self.word(),
-            Encoding::LittleEndian => self.binary(scalar, |bytes| bytes),
-            Encoding::BigEndian => self.binary(scalar, |mut bytes| {
-                bytes[..scalar.size()].reverse();
-                bytes
-            }),
+        if self.encoding == Encoding::Ascii {
+            return self.word();
         }
+        Ok(match scalar {
+            Scalar::I8 => f64::from(i8::from_le_bytes(self.bytes()?)),
+            Scalar::U8 => f64::from(u8::from_le_bytes(self.bytes()?)),
+            Scalar::I16 => f64::from(i16::from_le_bytes(self.bytes()?)),
+            Scalar::U16 => f64::from(u16::from_le_bytes(self.bytes()?)),
+            Scalar::I32 => f64::from(i32::from_le_bytes(self.bytes()?)),
+            Scalar::U32 => f64::from(u32::from_le_bytes(self.bytes()?)),
+            Scalar::F32 => f64::from(f32::from_le_bytes(self.bytes()?)),
+            Scalar::F64 => f64::from_le_bytes(self.bytes()?),
+        })
     }
 
-    /// The next number; `order` makes its bytes little-endian.
+    /// The bytes of the next number, the least significant first.
     #[inline]
-    fn binary(&mut self, scalar: Scalar, order: impl Fn([u8; 8]) -> [u8; 8]) -> Result<f64, Fault> {
-        let (number, rest) = self.rest.split_at_checked(scalar.size()).ok_or(Fault::End)?;
+    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], Fault> {
+        let (number, rest) = self.rest.split_first_chunk::<N>().ok_or(Fault::End)?;
         self.rest = rest;
-        let mut bytes = [0; 8];
-        bytes[..number.len()].copy_from_slice(number);
-        let bytes = order(bytes);
-        let [a, b, c, d, ..] = bytes;
-        Ok(match scalar {
-            Scalar::I8 => f64::from(a as i8),
-            Scalar::U8 => f64::from(a),
-            Scalar::I16 => f64::from(i16::from_le_bytes([a, b])),
-            Scalar::U16 => f64::from(u16::from_le_bytes([a, b])),
-            Scalar::I32 => f64::from(i32::from_le_bytes([a, b, c, d])),
-            Scalar::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
-            Scalar::F32 => f64::from(f32::from_le_bytes([a, b, c, d])),
-            Scalar::F64 => f64::from_le_bytes(bytes),
-        })
+        let mut bytes = *number;
+        if self.encoding == Encoding::BigEndian {
+            bytes.reverse();
+        }
+        Ok(bytes)
     }
 
     fn word(&mut self) -> Result<f64, Fault> {

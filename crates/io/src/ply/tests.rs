@@ -68,9 +68,9 @@ fn polygons() {
 #[test]
 fn binary_with_all_types() {
     for order in [Order::Little, Order::Big] {
-        let (format, bytes): (_, fn(&[u8]) -> Vec<u8>) = match order {
-            Order::Little => ("binary_little_endian", |b| b.to_vec()),
-            Order::Big => ("binary_big_endian", |b| b.iter().rev().copied().collect()),
+        let format = match order {
+            Order::Little => "binary_little_endian",
+            Order::Big => "binary_big_endian",
         };
         let elements = "obj_info x\nelement camera 2\nproperty list ushort double a\nproperty char b\n\
             element vertex 3\nproperty double x\nproperty float y\nproperty short z\nproperty uchar red\n\
@@ -79,7 +79,10 @@ fn binary_with_all_types() {
             element face 1\nproperty uint face_indices\nproperty list int uint16 vertex_index\n\
             property list uint8 float32 texcoord\n";
         let mut data = header(format, elements);
-        let mut push = |little: &[u8]| data.extend(bytes(little));
+        let mut push = |little: &[u8]| match order {
+            Order::Little => data.extend(little),
+            Order::Big => data.extend(little.iter().rev()),
+        };
         for n in [2_u16, 0] {
             push(&n.to_le_bytes());
             for _ in 0..n {
@@ -194,10 +197,7 @@ fn truncated_files() {
         whole.extend(value.to_le_bytes());
     }
     for _ in 0..2 {
-        whole.push(3);
-        for i in [0_i32, 1, 2] {
-            whole.extend(i.to_le_bytes());
-        }
+        whole.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]);
     }
     assert!(read_ply(&whole).is_ok());
     check_error(&whole[..whole.len() - 1], "the data ends at face 1 of 2 that the header declares");

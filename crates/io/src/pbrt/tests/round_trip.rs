@@ -195,6 +195,7 @@ fn made_documents_survive_printing() {
 }
 
 /// All scene files in the folder of shared scenes, if it is there.
+#[expect(clippy::print_stdout, reason = "a skipped test should say so")]
 pub(super) fn shared_scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes");
     let mut scenes = Vec::new();
