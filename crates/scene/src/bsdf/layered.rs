@@ -438,6 +438,15 @@ impl Layered {
         Microfacets::new(join(coat_x, base_x), join(coat_y, base_y))
     }
 
+    /// Alpha of the coat if it is rough, else of the base.
+    #[must_use]
+    pub(super) fn glossy_roughness(&self) -> f32 {
+        match (self.coat.lobes().is_glossy(), self.base) {
+            (false, Base::Conductor(base)) => base.microfacets.mean_alpha(),
+            _ => self.coat.microfacets.mean_alpha(),
+        }
+    }
+
     /// The same with rougher coat and base.
     #[must_use]
     pub fn regularized(self) -> Self {

@@ -277,6 +277,18 @@ impl Bsdf {
         self.kind.pdf(local_o, local_i, lobes)
     }
 
+    /// GGX alpha of the glossy lobes, the mean of both tangents; 0 if there are none. Of a coated surface, that of the
+    /// coat if it is rough, else that of the base.
+    #[must_use]
+    pub fn glossy_roughness(&self) -> f32 {
+        match &self.kind {
+            BsdfKind::Conductor(bsdf) => bsdf.microfacets.mean_alpha(),
+            BsdfKind::Dielectric(bsdf) if bsdf.lobes().is_glossy() => bsdf.microfacets.mean_alpha(),
+            BsdfKind::Layered(bsdf) if bsdf.lobes().is_glossy() => bsdf.glossy_roughness(),
+            _ => 0.0,
+        }
+    }
+
     /// Widens narrow lobes, for paths that have already scattered widely: less noise, a little bias. Dirac lobes
     /// become glossy.
     pub fn regularize(&mut self) {

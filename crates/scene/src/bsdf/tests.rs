@@ -524,6 +524,18 @@ fn regularization_widens_narrow_lobes() {
     assert_eq!(Microfacets::new(0.5, 0.31).regularized().alpha(), (0.5, 0.31));
 }
 
+/// Only glossy surfaces have a glossy roughness, and it is that of their facets.
+#[test]
+fn glossy_roughness_is_alpha() {
+    let n = Normal3::new(0.0, 0.0, 1.0);
+    for row in &table() {
+        let bsdf = Bsdf::new(n, n, Vector3::new(1.0, 0.0, 0.0), row.kind);
+        assert_eq!(bsdf.glossy_roughness() > 0.0, bsdf.lobes().is_glossy(), "{}", row.name);
+    }
+    let brushed = Bsdf::new(n, n, Vector3::new(1.0, 0.0, 0.0), BsdfKind::Conductor(copper(0.1, 0.5)));
+    assert!(is_near(brushed.glossy_roughness(), 0.3, 1e-6, 0.0));
+}
+
 /// The colour of auxiliary images is about what a furnace shows.
 #[test]
 fn albedo_is_near_the_furnace() {
