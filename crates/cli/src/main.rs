@@ -1,3 +1,46 @@
-//! The `etendue` command.
+//! The `etendue` command: what was typed becomes a call of the library, and its answer becomes text and files.
+//!
+//! Text for people goes to standard error, answers of `--json` and `list` to standard output. Exit codes: 0 done,
+//! 1 failed while running, 2 bad usage or bad scene, 130 interrupted with what was finished written.
 
-fn main() {}
+mod args;
+mod compare;
+mod failure;
+mod info;
+mod list;
+mod load;
+mod merge;
+mod metadata;
+mod progress;
+mod render;
+mod report;
+mod stats;
+mod tonemap;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+use failure::Failure;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let result = match arguments.command {
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Info(arguments) => info::run(&arguments),
+        Command::List(arguments) => list::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
+        Command::Merge(arguments) => merge::run(&arguments),
+        Command::Tonemap(arguments) => tonemap::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            if let Some(message) = failure.message() {
+                report::error(message);
+            }
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}

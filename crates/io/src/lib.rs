@@ -5,6 +5,7 @@
 //! [`load_assets`] reads these.
 
 pub mod assets;
+pub mod checkpoint;
 pub mod error;
 pub mod images;
 pub mod pbrt;

@@ -147,7 +147,23 @@ fn translate(expression: &str) -> Result<String, String> {
             'S' if !has_glossy => "Ss",
             'D' if !has_glossy => "Dd",
             '.' if !in_class => "DsdSV",
-            'L' | 'S' | 'D' | 'V' | 'E' | '[' | ']' | '(' | ')' | '|' | '*' | '+' | '?' | '{' | '}' | ',' | '^'
+            'L'
+            | 'S'
+            | 'D'
+            | 'V'
+            | 'E'
+            | '['
+            | ']'
+            | '('
+            | ')'
+            | '|'
+            | '*'
+            | '+'
+            | '?'
+            | '{'
+            | '}'
+            | ','
+            | '^'
             | '0'..='9' => {
                 pattern.push(letter);
                 continue;
@@ -186,7 +202,8 @@ impl PathExpressions {
     pub fn new(named: &[(String, String)]) -> Result<Self, ExpressionError> {
         let mut result = Self::default();
         for (name, expression) in named {
-            let refuse = |reason: &str| ExpressionError { expression: expression.clone(), reason: reason.to_owned() };
+            let refuse =
+                |reason: &str| ExpressionError { expression: expression.clone(), reason: reason.to_owned() };
             if result.names.len() == MAX_EXPRESSIONS {
                 return Err(refuse("a render can have at most 32 expressions"));
             }

@@ -1,9 +1,9 @@
 //! From the name in a scene file to a method.
 
+use etendue_scene::Assets;
 use etendue_scene::diagnostics::{Diagnostics, nearest_name};
 use etendue_scene::document::Entity;
 use etendue_scene::parameters::{BuildContext, ParameterSpec, Parameters};
-use etendue_scene::Assets;
 
 use crate::integrator::Integrator;
 use crate::lpe::PathExpressions;
@@ -38,15 +38,44 @@ const PATH_ALIASES: &[&str] = &["volpath", "simplepath", "simplevolpath", "rando
 
 /// Methods that scene files name and that are still to come.
 const COMING: &[&str] = &[
-    "ambientocclusion", "ao", "aov", "bdpt", "distribution", "function", "light", "lightpath", "mlt", "pathmlt",
-    "photonmap", "photons", "ppm", "radiosity", "sppm", "vcm", "whitted",
+    "ambientocclusion",
+    "ao",
+    "aov",
+    "bdpt",
+    "distribution",
+    "function",
+    "light",
+    "lightpath",
+    "mlt",
+    "pathmlt",
+    "photonmap",
+    "photons",
+    "ppm",
+    "radiosity",
+    "sppm",
+    "vcm",
+    "whitted",
 ];
 
 /// Parameters of pbrt's other integrators, which say nothing to the path tracer.
 const FOREIGN_PARAMETERS: &[&str] = &[
-    "radius", "photonsperiteration", "seed", "bootstrapsamples", "chains", "mutationsperpixel",
-    "largestepprobability", "sigma", "cossample", "maxdistance", "visualizestrategies", "visualizeweights",
-    "samplebsdf", "samplelights", "skipbad", "function", "imagefilename",
+    "radius",
+    "photonsperiteration",
+    "seed",
+    "bootstrapsamples",
+    "chains",
+    "mutationsperpixel",
+    "largestepprobability",
+    "sigma",
+    "cossample",
+    "maxdistance",
+    "visualizestrategies",
+    "visualizeweights",
+    "samplebsdf",
+    "samplelights",
+    "skipbad",
+    "function",
+    "imagefilename",
 ];
 
 /// The method that an entity names, which fills layers by these expressions; a name that is known and not available
@@ -61,7 +90,11 @@ pub fn method(entity: &Entity, expressions: PathExpressions) -> (Option<Box<dyn 
         let message = format!("the integrator \"{name}\" is not available yet; \"path\" stands in for it");
         context.diagnostics.warning(entity.span, message);
     } else if name != "path" && !PATH_ALIASES.contains(&name) {
-        let known = INTEGRATORS.iter().map(|m| m.name).chain(PATH_ALIASES.iter().copied()).chain(COMING.iter().copied());
+        let known = INTEGRATORS
+            .iter()
+            .map(|m| m.name)
+            .chain(PATH_ALIASES.iter().copied())
+            .chain(COMING.iter().copied());
         let near = nearest_name(name, known);
         let error = context.diagnostics.error(entity.span, format!("unknown integrator \"{name}\""));
         error.with_help(match near {

@@ -7,6 +7,7 @@
 //!
 //! SPEC: PT-1 to PT-5, EQ-1, EQ-7, MC-11, MC-12, MC-15.
 
+use etendue_geometry::Reference;
 use etendue_math::Ray;
 use etendue_scene::bsdf::{Bsdf, BsdfSample, Lobes, TransportMode};
 use etendue_scene::document::Entity;
@@ -15,7 +16,6 @@ use etendue_scene::light::LightId;
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 use etendue_scene::scene::Surface;
 use etendue_scene::{Film, Scene};
-use etendue_geometry::Reference;
 use etendue_spectrum::{Sampled, Wavelengths};
 
 use crate::integrator::{Control, Integrator, PassEnd, Passes};
@@ -159,9 +159,11 @@ impl Integrator for PathTracer {
     }
 
     fn run_pass(&mut self, scene: &Scene, pass: u64, film: &mut Film, control: &Control<'_>) -> PassEnd {
-        let camera_pass = CameraPass { wavelengths: self.settings.wavelengths, expressions: &self.expressions };
+        let camera_pass =
+            CameraPass { wavelengths: self.settings.wavelengths, expressions: &self.expressions };
         let settings = self.settings;
-        camera_pass.run(scene, pass, film, control, |tracer, path| Walk::new(&settings, path).follow(tracer, path))
+        camera_pass
+            .run(scene, pass, film, control, |tracer, path| Walk::new(&settings, path).follow(tracer, path))
     }
 }
 
@@ -231,7 +233,8 @@ impl<'s> Walk<'s> {
                 self.add_direct_light(tracer, &surface, &bsdf, path);
             }
             let (u_component, u) = (path.sampler.next_1d(), path.sampler.next_2d());
-            let Some(sample) = bsdf.sample(surface.wo, u_component, u, TransportMode::Radiance, Lobes::ALL) else {
+            let Some(sample) = bsdf.sample(surface.wo, u_component, u, TransportMode::Radiance, Lobes::ALL)
+            else {
                 break;
             };
             self.scatter(&surface, &sample, &mut path.layers);
@@ -292,7 +295,13 @@ impl<'s> Walk<'s> {
         }
     }
 
-    fn add_direct_light(&mut self, tracer: &Tracer<'_>, surface: &Surface, bsdf: &Bsdf, path: &mut CameraPath<'_>) {
+    fn add_direct_light(
+        &mut self,
+        tracer: &Tracer<'_>,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        path: &mut CameraPath<'_>,
+    ) {
         let Some(light) = sample_light(tracer.scene, surface, &mut path.sampler, &path.lambda) else {
             return;
         };
@@ -364,9 +373,8 @@ fn describe(scene: &Scene, surface: &Surface, bsdf: &Bsdf, lambda: &Wavelengths)
     let point = &surface.point;
     let camera_from_world = scene.camera.transform_at(surface.time).inverse();
     let p_camera = camera_from_world.point(point.p);
-    let to_array = |n: etendue_math::Normal3| {
-        n.as_vector().try_normalized().map_or([0.0; 3], |n| [n.x, n.y, n.z])
-    };
+    let to_array =
+        |n: etendue_math::Normal3| n.as_vector().try_normalized().map_or([0.0; 3], |n| [n.x, n.y, n.z]);
     let (position, normal, shading_normal) = match scene.film.kind {
         FilmKind::GBuffer(AovSpace::World) => (point.p, point.ng, bsdf.ns()),
         _ => (p_camera, camera_from_world.normal(point.ng), camera_from_world.normal(bsdf.ns())),

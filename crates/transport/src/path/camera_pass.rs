@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use etendue_geometry::Hit;
 use etendue_math::{Point2, Ray, Sampler};
-use etendue_scene::film::{Features, FilmTile, PixelBounds, PixelSample, FilmSums};
+use etendue_scene::film::{Features, FilmSums, FilmTile, PixelBounds, PixelSample};
 use etendue_scene::{Film, Scene};
 use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;

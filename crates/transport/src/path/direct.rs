@@ -41,7 +41,13 @@ pub fn sample_light(
 /// What the surface sends on towards `wo` of a light's sample through the wanted lobes, visibility left out; weighted
 /// against scattering, whose density is `pdf_scatter`.
 #[must_use]
-pub fn unoccluded_light(surface: &Surface, bsdf: &Bsdf, light: &DirectLight, pdf_scatter: f32, lobes: Lobes) -> Sampled {
+pub fn unoccluded_light(
+    surface: &Surface,
+    bsdf: &Bsdf,
+    light: &DirectLight,
+    pdf_scatter: f32,
+    lobes: Lobes,
+) -> Sampled {
     let wi = light.sample.wi;
     let f = bsdf.eval(surface.wo, wi, TransportMode::Radiance, lobes) * bsdf.abs_cos(wi);
     let weight = if light.sample.is_delta { 1.0 } else { power_heuristic(light.pdf_w, pdf_scatter) };

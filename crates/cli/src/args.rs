@@ -1,0 +1,317 @@
+//! The command line as typed.
+
+use std::ops::Range;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Physically based rendering: spectral, reproducible, honest about its error.
+#[derive(Debug, Parser)]
+#[command(name = "etendue", version, about)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene
+    Render(RenderArguments),
+    /// Tell what a scene holds
+    Info(InfoArguments),
+    /// Show what scene files may name: parameters, units, defaults
+    List(ListArguments),
+    /// Measure how two images differ
+    Compare(CompareArguments),
+    /// Add renders that were split over passes, or that are independent
+    Merge(MergeArguments),
+    /// Turn radiance into a picture for a display
+    Tonemap(TonemapArguments),
+}
+
+/// Arguments of `render`.
+#[derive(Args, Debug)]
+pub struct RenderArguments {
+    /// Scene file (pbrt-v4, may be gzipped)
+    pub scene: PathBuf,
+    /// Output: .exr (all layers and metadata), .png, .ppm, .pfm or .hdr; may repeat [default: the film's name]
+    #[arg(short, long = "output", value_name = "OUT")]
+    pub outputs: Vec<PathBuf>,
+    /// Integrator in place of the scene's, with parameters
+    #[arg(long, value_name = "NAME[:key=value,...]")]
+    pub integrator: Option<String>,
+    /// Samples per pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub spp: Option<u64>,
+    /// Stop after this time, such as 30s, 5m or 2h
+    #[arg(long, value_name = "TIME", value_parser = parse_duration)]
+    pub time: Option<Duration>,
+    /// Stop once the relative standard error of the image falls below this
+    #[arg(long, value_name = "E", value_parser = parse_positive)]
+    pub error: Option<f64>,
+    /// Render passes A up to, not including, B; `merge` adds such parts exactly
+    #[arg(long, value_name = "A..B", value_parser = parse_range, conflicts_with = "spp")]
+    pub passes: Option<Range<u64>>,
+    /// Random seed
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Number of threads [default: all cores]; it does not change the image
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..1024))]
+    pub threads: Option<u64>,
+    /// Resolution in place of the film's
+    #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
+    pub resolution: Option<[i32; 2]>,
+    /// Part of the image to render, in shares of its size
+    #[arg(long, value_name = "x0,x1,y0,y1", value_parser = parse_crop)]
+    pub crop: Option<[f32; 4]>,
+    /// Layer of the paths that an expression selects, such as caustic='LS+DE'; may repeat
+    #[arg(long = "lpe", value_name = "NAME=EXPRESSION", value_parser = parse_named)]
+    pub expressions: Vec<(String, String)>,
+    /// Layers bounce0, bounce1, ... of light that was scattered that many times, up to N
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..24))]
+    pub bounces: Option<u64>,
+    /// Wavelengths of a path
+    #[arg(long, value_enum)]
+    pub wavelengths: Option<WavelengthArgument>,
+    /// File that keeps the state of the render
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<PathBuf>,
+    /// How often the checkpoint is written
+    #[arg(long, value_name = "TIME", value_parser = parse_duration, default_value = "60s", requires = "checkpoint")]
+    pub every: Duration,
+    /// Go on from the checkpoint, if there is one
+    #[arg(long, requires = "checkpoint")]
+    pub resume: bool,
+    /// Write statistics as JSON
+    #[arg(long, value_name = "FILE")]
+    pub stats: Option<PathBuf>,
+    /// Print errors alone
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Do not show progress
+    #[arg(long)]
+    pub no_progress: bool,
+}
+
+/// Wavelengths of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum WavelengthArgument {
+    /// Four wavelengths, rotated copies of a hero
+    Hero,
+    /// One random wavelength
+    Single,
+}
+
+/// Arguments of `info`.
+#[derive(Args, Debug)]
+pub struct InfoArguments {
+    /// Scene file
+    pub scene: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `list`.
+#[derive(Args, Debug)]
+pub struct ListArguments {
+    /// What to list
+    #[arg(value_enum)]
+    pub kind: ListKind,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What can be listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs, reason = "each is what its name says")]
+pub enum ListKind {
+    Integrators,
+    Materials,
+    Textures,
+    Lights,
+    Shapes,
+    Media,
+    Cameras,
+    Films,
+    Samplers,
+    Filters,
+    Accelerators,
+    Tonemappers,
+    Spectra,
+}
+
+/// Arguments of `compare`.
+#[derive(Args, Debug)]
+pub struct CompareArguments {
+    /// Image to judge
+    pub image: PathBuf,
+    /// Image to judge it by
+    pub reference: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Write a false-colour picture of the difference
+    #[arg(short, long = "output", value_name = "MAP")]
+    pub output: Option<PathBuf>,
+    /// What the picture shows
+    #[arg(long, value_enum, default_value = "flip")]
+    pub map: MapArgument,
+    /// Clamp both images to this largest value first
+    #[arg(long, value_name = "MAX")]
+    pub clamp: Option<f32>,
+    /// Multiply the reference by this first
+    #[arg(long, value_name = "FACTOR", default_value = "1")]
+    pub scale_reference: f32,
+    /// Exposure for FLIP, in stops
+    #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]
+    pub exposure: f32,
+}
+
+/// What a difference picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum MapArgument {
+    /// FLIP error
+    Flip,
+    /// Absolute difference
+    Absolute,
+    /// Difference relative to the reference
+    Relative,
+}
+
+/// Arguments of `merge`.
+#[derive(Args, Debug)]
+pub struct MergeArguments {
+    /// EXR files of one scene
+    #[arg(required = true, num_args = 2..)]
+    pub images: Vec<PathBuf>,
+    /// Output; may repeat
+    #[arg(short, long = "output", value_name = "OUT", required = true)]
+    pub outputs: Vec<PathBuf>,
+}
+
+/// Arguments of `tonemap`.
+#[derive(Args, Debug)]
+pub struct TonemapArguments {
+    /// Image with linear radiance
+    pub image: PathBuf,
+    /// Output; may repeat
+    #[arg(short, long = "output", value_name = "OUT", required = true)]
+    pub outputs: Vec<PathBuf>,
+    /// Tone curve
+    #[arg(long, value_enum, default_value = "clamp")]
+    pub operator: OperatorArgument,
+    /// Exposure in stops, before the curve
+    #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Key of the photographic operator: what the log-average luminance becomes
+    #[arg(long, default_value = "0.18", value_parser = parse_positive)]
+    pub key: f64,
+    /// Scaled luminance that becomes white, of the photographic operator [default: infinite]
+    #[arg(long, value_parser = parse_positive)]
+    pub white: Option<f64>,
+    /// Hide the steps of 8-bit outputs in noise
+    #[arg(long)]
+    pub dither: bool,
+}
+
+/// A tone curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum OperatorArgument {
+    /// Clip to [0, 1]
+    Clamp,
+    /// Divide by the largest value
+    Maximum,
+    /// 1 - exp(-L / mean)
+    Exponential,
+    /// Photographic operator of Reinhard et al. 2002, global
+    Reinhard,
+}
+
+fn parse_duration(text: &str) -> Result<Duration, String> {
+    let number_end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let (number, unit) = text.split_at(number_end);
+    let seconds = match unit {
+        "" | "s" => 1.0,
+        "ms" => 1e-3,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(format!("'{unit}' is not a unit of time; use ms, s, m or h")),
+    };
+    let number: f64 = number.parse().map_err(|_| "a time is a number with a unit, such as 30s".to_owned())?;
+    Duration::try_from_secs_f64(number * seconds).map_err(|error| error.to_string())
+}
+
+fn parse_positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("a positive number is needed".to_owned()),
+    }
+}
+
+fn parse_range(text: &str) -> Result<Range<u64>, String> {
+    let malformed = || "passes are given as A..B with A below B, such as 0..8".to_owned();
+    let (start, end) = text.split_once("..").ok_or_else(malformed)?;
+    let range = start.parse().map_err(|_| malformed())?..end.parse().map_err(|_| malformed())?;
+    if range.is_empty() { Err(malformed()) } else { Ok(range) }
+}
+
+fn parse_resolution(text: &str) -> Result<[i32; 2], String> {
+    let malformed = || "a resolution is WIDTHxHEIGHT in pixels, such as 640x480".to_owned();
+    let (width, height) = text.split_once('x').ok_or_else(malformed)?;
+    let resolution = [width.parse().map_err(|_| malformed())?, height.parse().map_err(|_| malformed())?];
+    if resolution.iter().any(|r| *r < 1) { Err(malformed()) } else { Ok(resolution) }
+}
+
+fn parse_crop(text: &str) -> Result<[f32; 4], String> {
+    let malformed = || "a crop is x0,x1,y0,y1 between 0 and 1".to_owned();
+    let numbers: Vec<f32> = text.split(',').map(str::parse).collect::<Result<_, _>>().map_err(|_| malformed())?;
+    match numbers.try_into() {
+        Ok([x0, x1, y0, y1]) if x0 < x1 && y0 < y1 => Ok([x0, x1, y0, y1]),
+        _ => Err(malformed()),
+    }
+}
+
+fn parse_named(text: &str) -> Result<(String, String), String> {
+    let (name, expression) = text.split_once('=').ok_or("a layer is NAME=EXPRESSION, such as caustic=LS+DE")?;
+    Ok((name.to_owned(), expression.to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The command line is put together without contradictions.
+    #[test]
+    fn arguments_are_consistent() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    /// Times are read with their units.
+    #[test]
+    fn durations() {
+        assert_eq!(parse_duration("30s"), Ok(Duration::from_secs(30)));
+        assert_eq!(parse_duration("1.5m"), Ok(Duration::from_secs(90)));
+        assert_eq!(parse_duration("250ms"), Ok(Duration::from_millis(250)));
+        assert!(parse_duration("5 parsecs").is_err());
+        assert!(parse_duration("s").is_err());
+    }
+
+    /// Ranges, resolutions and crops that mean nothing are refused.
+    #[test]
+    fn malformed_values() {
+        assert_eq!(parse_range("0..8"), Ok(0..8));
+        assert!(parse_range("8..8").is_err());
+        assert!(parse_range("3").is_err());
+        assert_eq!(parse_resolution("64x48"), Ok([64, 48]));
+        assert!(parse_resolution("64x0").is_err());
+        assert!(parse_crop("0,0.5,0.5").is_err());
+        assert!(parse_crop("0.5,0.5,0,1").is_err());
+        assert!(parse_named("caustic").is_err());
+    }
+}

@@ -1,0 +1,160 @@
+//! From a scene file and overrides to a scene.
+
+use std::path::Path;
+
+use etendue::io::checkpoint::hash_bytes;
+use etendue::io::{load_assets, read_pbrt};
+use etendue::scene::document::{Document, Entity, Parameter, Value};
+use etendue::scene::{Diagnostics, Scene};
+use etendue::transport::method::INTEGRATORS;
+
+use crate::failure::{Failure, Result};
+use crate::report;
+
+/// What the command line changes in a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Overrides {
+    /// Pixels across and down.
+    pub resolution: Option<[i32; 2]>,
+    /// Part of the image in shares of its size.
+    pub crop: Option<[f32; 4]>,
+    /// `NAME[:key=value,...]`.
+    pub integrator: Option<String>,
+    /// Word for the parameter `wavelengths` of the integrator.
+    pub wavelengths: Option<&'static str>,
+}
+
+/// A scene with the document it was built from.
+#[derive(Debug)]
+pub struct LoadedScene {
+    /// As written, with overrides.
+    pub document: Document,
+    /// As built.
+    pub scene: Scene,
+    /// Problems that do not keep it from rendering.
+    pub diagnostics: Diagnostics,
+}
+
+/// Reads and builds a scene; all problems are collected, and reported unless `quiet` leaves out the warnings.
+pub fn load(path: &Path, overrides: &Overrides, quiet: bool) -> Result<LoadedScene> {
+    let (mut document, mut diagnostics) = read_pbrt(path);
+    // A document with syntax errors still tells which of its files are missing.
+    let (assets, problems) = load_assets(&document);
+    diagnostics.append(problems);
+    apply(overrides, &mut document)?;
+    let (scene, problems) = Scene::build(&document, assets);
+    diagnostics.append(problems);
+    report::diagnostics(&diagnostics, &document.sources, quiet);
+    match scene {
+        Some(scene) if !diagnostics.has_errors() => Ok(LoadedScene { document, scene, diagnostics }),
+        _ => Err(Failure::Scene),
+    }
+}
+
+fn apply(overrides: &Overrides, document: &mut Document) -> Result<()> {
+    if let Some([x, y]) = overrides.resolution {
+        let film = document.film.get_or_insert_with(|| Entity::new("rgb"));
+        set(film, "xresolution", Value::Integers(vec![x]));
+        set(film, "yresolution", Value::Integers(vec![y]));
+        film.parameters.retain(|p| p.name != "pixelbounds");
+    }
+    if let Some(crop) = overrides.crop {
+        let film = document.film.get_or_insert_with(|| Entity::new("rgb"));
+        set(film, "cropwindow", Value::Floats(crop.to_vec()));
+        film.parameters.retain(|p| p.name != "pixelbounds");
+    }
+    if let Some(text) = &overrides.integrator {
+        document.integrator = Some(integrator_entity(text)?);
+    }
+    if let Some(word) = overrides.wavelengths {
+        let integrator = document.integrator.get_or_insert_with(|| Entity::new("path"));
+        set(integrator, "wavelengths", Value::Strings(vec![word.to_owned()]));
+    }
+    Ok(())
+}
+
+/// Gives a parameter a value, whatever it had.
+fn set(entity: &mut Entity, name: &str, value: Value) {
+    entity.parameters.retain(|p| p.name != name);
+    entity.parameters.push(Parameter::new(name, value));
+}
+
+/// `path:maxdepth=3,regularize=true` as an entity; the types of values follow the integrator's table.
+fn integrator_entity(text: &str) -> Result<Entity> {
+    let (name, settings) = text.split_once(':').unwrap_or((text, ""));
+    let mut entity = Entity::new(name);
+    let specs = INTEGRATORS.iter().find(|m| m.name == name).unwrap_or(&INTEGRATORS[0]).parameters;
+    for setting in settings.split(',').filter(|s| !s.is_empty()) {
+        let (key, value) = setting.split_once('=').ok_or_else(|| {
+            Failure::Usage(format!("'{setting}' is not a parameter; write --integrator NAME:key=value,key=value"))
+        })?;
+        let kind = specs.iter().find(|spec| spec.name == key).map_or("string", |spec| spec.kind);
+        let wrong = || Failure::Usage(format!("'{value}' is not a value of type {kind} for {key}"));
+        let value = match kind {
+            "integer" => Value::Integers(vec![value.parse().map_err(|_| wrong())?]),
+            "float" => Value::Floats(vec![value.parse().map_err(|_| wrong())?]),
+            "bool" => Value::Bools(vec![value.parse().map_err(|_| wrong())?]),
+            _ => Value::Strings(vec![value.to_owned()]),
+        };
+        if !specs.iter().any(|spec| spec.name == key) {
+            let known: Vec<&str> = specs.iter().map(|spec| spec.name).collect();
+            return Err(Failure::Usage(format!("{name} has no parameter {key}; it has {}", known.join(", "))));
+        }
+        entity.parameters.push(Parameter::new(key, value));
+    }
+    Ok(entity)
+}
+
+/// A hash of everything that determines the image but for the seed and the number of passes: the text of the scene,
+/// what the command line changed, and the layers.
+#[must_use]
+pub fn fingerprint(document: &Document, layers: &[(String, String)]) -> u64 {
+    let mut bytes = Vec::new();
+    for file in document.sources.files() {
+        bytes.extend_from_slice(&hash_bytes(file.text.as_bytes()).to_le_bytes());
+    }
+    for entity in [&document.film, &document.integrator].into_iter().flatten() {
+        bytes.extend_from_slice(entity.type_name.as_bytes());
+        for parameter in entity.parameters.iter().filter(|p| p.name != "filename") {
+            bytes.extend_from_slice(format!("{} {:?}", parameter.name, parameter.value).as_bytes());
+        }
+    }
+    bytes.extend_from_slice(format!("{layers:?}").as_bytes());
+    hash_bytes(&bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Parameters on the command line get the types of the integrator's table.
+    #[test]
+    fn integrator_parameters_are_typed() {
+        let entity = integrator_entity("path:maxdepth=3,regularize=true,lights=scattering").expect("good");
+        assert_eq!(entity.type_name, "path");
+        assert_eq!(entity.parameters[0].value, Value::Integers(vec![3]));
+        assert_eq!(entity.parameters[1].value, Value::Bools(vec![true]));
+        assert_eq!(entity.parameters[2].value, Value::Strings(vec!["scattering".to_owned()]));
+    }
+
+    /// Slips on the command line are refused, not guessed at.
+    #[test]
+    fn wrong_parameters_are_refused() {
+        for text in ["path:maxdepth", "path:maxdepth=three", "path:maxdeep=3"] {
+            assert!(integrator_entity(text).is_err(), "{text}");
+        }
+    }
+
+    /// The name of the output does not change the picture; its resolution does.
+    #[test]
+    fn fingerprint_ignores_names_of_outputs() {
+        let film = |name: &str, x: i32| {
+            let film = Entity::new("rgb")
+                .with("filename", Value::Strings(vec![name.to_owned()]))
+                .with("xresolution", Value::Integers(vec![x]));
+            Document { film: Some(film), ..Document::default() }
+        };
+        assert_eq!(fingerprint(&film("a.exr", 8), &[]), fingerprint(&film("b.exr", 8), &[]));
+        assert_ne!(fingerprint(&film("a.exr", 8), &[]), fingerprint(&film("a.exr", 9), &[]));
+    }
+}

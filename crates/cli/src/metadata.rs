@@ -1,0 +1,101 @@
+//! What image files say of themselves, and how it is read back.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use etendue::image::Image;
+use etendue::scene::film::PixelBounds;
+use etendue::scene::{Film, Scene};
+
+/// Keys of the metadata.
+pub const FINGERPRINT: &str = "etendue.fingerprint";
+/// Seed of the sampler.
+pub const SEED: &str = "etendue.seed";
+/// Passes in the image, as `0..8 16..24`.
+pub const PASSES: &str = "etendue.passes";
+/// Samples per pixel.
+pub const SPP: &str = "etendue.spp";
+/// Rendered pixels: x0 x1 y0 y1 of the full image.
+pub const PIXELS: &str = "etendue.pixels";
+/// Luminance of unit red, green and blue.
+pub const LUMINANCE: &str = "etendue.luminance";
+
+/// Describes a render.
+#[must_use]
+pub fn describe(scene: &Scene, film: &Film, fingerprint: u64, scene_name: &str) -> BTreeMap<String, String> {
+    let mut metadata = BTreeMap::new();
+    let mut set = |key: &str, value: String| metadata.insert(key.to_owned(), value);
+    set("software", format!("etendue {}", env!("CARGO_PKG_VERSION")));
+    set("etendue.scene", scene_name.to_owned());
+    set(FINGERPRINT, format!("{fingerprint:016x}"));
+    set(SEED, scene.sampler.seed.to_string());
+    set(PASSES, format_passes(film.passes()));
+    set(SPP, film.n_passes().to_string());
+    set("etendue.integrator", describe_integrator(scene));
+    set("etendue.unit", "cd/m^2 times exposure time in s times ISO / 100".to_owned());
+    set("etendue.colorspace", film.settings().color_space.name().to_owned());
+    let crop = film.settings().crop;
+    set(PIXELS, format!("{} {} {} {}", crop.min[0], crop.max[0], crop.min[1], crop.max[1]));
+    set("etendue.resolution", format!("{} {}", film.settings().resolution[0], film.settings().resolution[1]));
+    set(LUMINANCE, film.settings().luminance_weights().map(|w| w.to_string()).join(" "));
+    let camera = scene.camera.world_from_camera().start;
+    let rows: Vec<String> = camera.rows().iter().flatten().map(ToString::to_string).collect();
+    set("etendue.world_from_camera", rows.join(" "));
+    metadata
+}
+
+fn describe_integrator(scene: &Scene) -> String {
+    let parameters = scene.integrator.parameters.iter().map(|p| format!("{}={:?}", p.name, p.value));
+    let list: Vec<String> = parameters.collect();
+    if list.is_empty() {
+        scene.integrator.type_name.clone()
+    } else {
+        format!("{}: {}", scene.integrator.type_name, list.join(", "))
+    }
+}
+
+fn format_passes(passes: &[Range<u64>]) -> String {
+    passes.iter().map(|r| format!("{}..{}", r.start, r.end)).collect::<Vec<_>>().join(" ")
+}
+
+/// Passes of an image.
+#[must_use]
+pub fn passes(image: &Image) -> Option<Vec<Range<u64>>> {
+    let text = image.metadata.get(PASSES)?;
+    let ranges = text.split_whitespace().map(|range| {
+        let (start, end) = range.split_once("..")?;
+        Some(start.parse().ok()?..end.parse().ok()?)
+    });
+    ranges.collect()
+}
+
+/// Numbers of a metadata entry.
+#[must_use]
+pub fn numbers<T: std::str::FromStr, const N: usize>(image: &Image, key: &str) -> Option<[T; N]> {
+    let values: Vec<T> =
+        image.metadata.get(key)?.split_whitespace().map(|n| n.parse().ok()).collect::<Option<_>>()?;
+    values.try_into().ok()
+}
+
+/// Pixels of the full image that an image holds.
+#[must_use]
+pub fn pixels(image: &Image) -> Option<PixelBounds> {
+    let [x0, x1, y0, y1] = numbers(image, PIXELS)?;
+    Some(PixelBounds { min: [x0, y0], max: [x1, y1] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Passes survive the way through text.
+    #[test]
+    fn passes_round_trip() {
+        let ranges = vec![0..8, 12..13];
+        let mut image = Image::new(1, 1);
+        image.metadata.insert(PASSES.to_owned(), format_passes(&ranges));
+        assert_eq!(passes(&image), Some(ranges));
+        image.metadata.insert(PASSES.to_owned(), "nonsense".to_owned());
+        assert_eq!(passes(&image), None);
+    }
+}

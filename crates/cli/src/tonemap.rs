@@ -1,0 +1,37 @@
+//! `etendue tonemap`.
+
+use etendue::image::tonemap::{Dither, Operator, Quantization, Reinhard, apply};
+use etendue::io::images::{read_image, write_image, write_png, write_ppm};
+
+use crate::args::{OperatorArgument, TonemapArguments};
+use crate::failure::{Failure, Result};
+
+/// Runs the command.
+pub fn run(arguments: &TonemapArguments) -> Result<()> {
+    let image = read_image(&arguments.image).map_err(|error| Failure::Usage(error.to_string()))?;
+    if image.rgb_pixels().is_none() {
+        return Err(Failure::Usage(format!("{}: there are no channels R, G, B or Y", arguments.image.display())));
+    }
+    let operator = match arguments.operator {
+        OperatorArgument::Clamp => Operator::Clamp,
+        OperatorArgument::Maximum => Operator::DivideByMaximum,
+        OperatorArgument::Exponential => Operator::Exponential,
+        OperatorArgument::Reinhard => Operator::Reinhard(Reinhard {
+            key: arguments.key as f32,
+            white: arguments.white.map(|w| w as f32),
+            ..Reinhard::default()
+        }),
+    };
+    let mapped = apply(&image, operator, arguments.exposure);
+    let dither = if arguments.dither { Dither::Ordered } else { Dither::None };
+    let quantization = Quantization { dither, ..Quantization::default() };
+    for path in &arguments.outputs {
+        let result = match path.extension().and_then(|e| e.to_str()) {
+            Some("png") => write_png(path, &mapped, quantization),
+            Some("ppm") => write_ppm(path, &mapped, quantization),
+            _ => write_image(path, &mapped),
+        };
+        result.map_err(|error| Failure::Running(error.to_string()))?;
+    }
+    Ok(())
+}
