@@ -9,13 +9,9 @@ use crate::camera::Camera;
 use crate::document::Entity;
 use crate::film::FilmSettings;
 use crate::filter::Filter;
-use crate::light::{Light, LightContext, LightId, LightSampler};
-use crate::material::{Material, MaterialContext};
+use crate::light::{Light, LightContext, LightId, LightPoint, LightSampler, LightTables};
+use crate::material::{MaterialContext, MaterialId, Materials};
 use crate::texture::{FloatTexture, TextureContext, Textures};
-
-/// Index of a material.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MaterialId(pub u32);
 
 /// What a scene knows of a shape beyond its geometry.
 #[derive(Clone, Copy, Debug)]
@@ -72,11 +68,13 @@ pub struct Scene {
     pub attributes: Vec<ShapeAttributes>,
     /// Textures, images and tabulated spectra.
     pub textures: Textures,
-    /// Materials by id.
-    pub materials: Vec<Material>,
+    /// Materials.
+    pub materials: Materials,
     /// Lights by id.
     pub lights: Vec<Light>,
-    /// The lights that surround the scene.
+    /// Arenas behind the ids that lights hold.
+    pub light_tables: LightTables,
+    /// The lights that rays meet when they leave the scene.
     pub infinite_lights: Vec<LightId>,
     /// How a light is chosen.
     pub light_sampler: LightSampler,
@@ -92,6 +90,8 @@ pub struct Scene {
     pub integrator: Entity,
     /// True if some shape has an alpha texture.
     pub has_alpha: bool,
+    /// True if light passes some shapes: by alpha, or because they are interfaces.
+    pub has_passable: bool,
 }
 
 impl Scene {
@@ -105,7 +105,7 @@ impl Scene {
     #[inline]
     #[must_use]
     pub const fn light_context(&self) -> LightContext<'_> {
-        LightContext { geometry: &self.geometry, textures: &self.textures }
+        LightContext { geometry: &self.geometry, spectra: &self.textures.spectra, tables: &self.light_tables }
     }
 
     /// The light of that id.
@@ -123,17 +123,6 @@ impl Scene {
             self.geometry.intersect(ray, t_max, &|hit| self.is_opaque(ray, hit))
         } else {
             self.geometry.intersect(ray, t_max, &|_| true)
-        }
-    }
-
-    /// True if the ray meets anything before `t_max`.
-    #[inline]
-    #[must_use]
-    pub fn occluded(&self, ray: &Ray, t_max: f32) -> bool {
-        if self.has_alpha {
-            self.geometry.occluded(ray, t_max, &|hit| self.is_opaque(ray, hit))
-        } else {
-            self.geometry.occluded(ray, t_max, &|_| true)
         }
     }
 
@@ -188,8 +177,7 @@ impl Scene {
     /// Materials that disperse reduce `lambda` to its first wavelength.
     #[must_use]
     pub fn bsdf(&self, surface: &Surface, lambda: &mut Wavelengths) -> Option<Bsdf> {
-        let material = &self.materials[surface.material.0 as usize];
-        material.bsdf(&self.textures, &self.material_context(surface), lambda)
+        self.materials.bsdf(surface.material, &self.textures, &self.material_context(surface), lambda)
     }
 
     fn material_context(&self, surface: &Surface) -> MaterialContext {
@@ -209,7 +197,7 @@ impl Scene {
             dvdy,
             face_index: point.face_index,
         };
-        MaterialContext::new(texture, point, surface.wo)
+        MaterialContext::new(point, texture, surface.wo)
     }
 
     /// Radiance in W/(m^2 sr nm) that a surface emits back along the path.
@@ -219,39 +207,37 @@ impl Scene {
             return Sampled::ZERO;
         };
         let point = &surface.point;
-        self.light(light).le(&self.light_context(), point.p, point.ng, point.uv, surface.wo, lambda)
+        self.light(light).le(&self.light_context(), point.ng, point.uv, surface.wo, lambda)
     }
 
-    /// The share of light that gets from a surface to a point: 0 or 1 without media. `interface` surfaces let it
-    /// pass.
+    /// The share of light that gets from a point of a light to a surface: 0 or 1 without media. `interface` surfaces
+    /// let it pass.
     #[must_use]
-    pub fn transmittance(&self, from: &Surface, to: Point3, to_error: Vector3, to_n: etendue_math::Normal3) -> f32 {
-        let origin = offset_ray_origin(from.point.p, from.point.p_error, from.point.ng, to - from.point.p);
-        let target = offset_ray_origin(to, to_error, to_n, origin - to);
-        self.transmittance_along(Ray { origin, direction: target - origin, time: from.time }, SHADOW_END)
+    pub fn transmittance(&self, from: &Surface, to: &LightPoint) -> f32 {
+        let origin = offset_ray_origin(from.point.p, from.point.p_error, from.point.ng, to.p - from.point.p);
+        let target = match to.n {
+            Some(n) => offset_ray_origin(to.p, to.p_error, n, origin - to.p),
+            None => to.p,
+        };
+        self.transmittance_along(&Ray { origin, direction: target - origin, time: from.time }, SHADOW_END)
     }
 
     /// The share of light that gets from a surface to infinity in the unit direction `wi`.
     #[must_use]
     pub fn transmittance_to_infinity(&self, from: &Surface, wi: Vector3) -> f32 {
-        self.transmittance_along(from.spawn_ray(wi), f32::INFINITY)
+        self.transmittance_along(&from.spawn_ray(wi), f32::INFINITY)
     }
 
-    fn transmittance_along(&self, ray: Ray, t_max: f32) -> f32 {
-        let blocked = self.geometry.occluded(&ray, t_max, &|hit: &Hit| {
-            let material = self.attributes[hit.geometry.0 as usize].material;
-            if matches!(self.materials[material.0 as usize], Material::Interface) {
-                return false;
-            }
-            !self.has_alpha || self.is_opaque(&ray, hit)
-        });
+    fn transmittance_along(&self, ray: &Ray, t_max: f32) -> f32 {
+        let blocked = if self.has_passable {
+            self.geometry.occluded(ray, t_max, &|hit: &Hit| {
+                let material = self.attributes[hit.geometry.0 as usize].material;
+                !self.materials.is_interface(material) && self.is_opaque(ray, hit)
+            })
+        } else {
+            self.geometry.occluded(ray, t_max, &|_| true)
+        };
         if blocked { 0.0 } else { 1.0 }
-    }
-
-    /// Material, alpha and light of a shape.
-    #[must_use]
-    pub fn attributes(&self, geometry: GeometryId) -> &ShapeAttributes {
-        &self.attributes[geometry.0 as usize]
     }
 }
 

@@ -20,7 +20,8 @@ use crate::assets::Assets;
 use crate::diagnostics::{Diagnostics, Span, nearest_name};
 use crate::document::{Document, Entity, InstanceEntity};
 use crate::parameters::{BuildContext, ParameterSpec};
-use crate::scene::{MaterialId, Scene, ShapeAttributes};
+use crate::material::MaterialId;
+use crate::scene::{Scene, ShapeAttributes};
 use crate::texture::Textures;
 
 pub use film::{FILMS, SAMPLERS};
@@ -77,12 +78,14 @@ impl Scene {
             return (None, context.diagnostics);
         }
         let has_alpha = attributes.iter().any(|a| a.alpha.is_some());
+        let has_passable = has_alpha || attributes.iter().any(|a| materials.is_interface(a.material));
         let scene = Self {
             geometry,
             attributes,
             textures,
             materials,
             lights: lights.lights,
+            light_tables: lights.tables,
             infinite_lights: lights.infinite,
             light_sampler: lights.sampler,
             camera,
@@ -91,6 +94,7 @@ impl Scene {
             sampler,
             integrator: document.integrator.clone().unwrap_or_else(|| Entity::new("volpath")),
             has_alpha,
+            has_passable,
         };
         (Some(scene), context.diagnostics)
     }

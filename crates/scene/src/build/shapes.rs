@@ -9,7 +9,8 @@ use crate::assets::LoadedMesh;
 use crate::diagnostics::Span;
 use crate::document::{MaterialReference, ShapeEntity};
 use crate::parameters::{ParameterSpec, Parameters};
-use crate::scene::{MaterialId, ShapeAttributes};
+use crate::material::MaterialId;
+use crate::scene::ShapeAttributes;
 use crate::texture::FloatTexture;
 
 use super::{Builder, known_names, unknown_name};

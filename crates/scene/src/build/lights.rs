@@ -1,0 +1,76 @@
+//! Lights, and how one of them is chosen.
+
+use etendue_geometry::Geometry;
+
+use crate::document::Value;
+use crate::light::{
+    AreaLight, Light, LightContext, LightId, LightSampler, LightSamplerKind, LightTables, SceneSphere,
+};
+
+use super::{Builder, Emitter};
+
+/// The lights of a scene.
+pub(super) struct BuiltLights {
+    pub(super) lights: Vec<Light>,
+    pub(super) tables: LightTables,
+    pub(super) infinite: Vec<LightId>,
+    pub(super) sampler: LightSampler,
+}
+
+impl Builder<'_, '_> {
+    pub(super) fn build_lights(&mut self, geometry: &Geometry) -> BuiltLights {
+        let mut tables = LightTables { scene_sphere: SceneSphere::around(geometry.bounds()), ..LightTables::default() };
+        let mut lights = Vec::new();
+        for entity in &self.document.lights {
+            lights.extend(tables.build_light(entity, &mut self.context));
+        }
+        for emitter in std::mem::take(&mut self.emitters) {
+            self.add_area_lights(emitter, geometry, &mut tables, &mut lights);
+        }
+        let ids = || (0..lights.len() as u32).map(LightId);
+        let infinite = ids().filter(|id| lights[id.0 as usize].is_environment()).collect();
+        let kind = self.light_sampler_kind();
+        let context = LightContext { geometry, spectra: &self.context.spectra, tables: &tables };
+        let sampler = LightSampler::new(kind, &lights, &context);
+        BuiltLights { lights, tables, infinite, sampler }
+    }
+
+    /// One light for each primitive of an emitting shape.
+    fn add_area_lights(
+        &mut self,
+        emitter: Emitter,
+        geometry: &Geometry,
+        tables: &mut LightTables,
+        lights: &mut Vec<Light>,
+    ) {
+        let id = emitter.geometry;
+        let primitives = 0..geometry.n_primitives(id);
+        let area: f64 = primitives.clone().map(|primitive| f64::from(geometry.area(id, primitive))).sum();
+        let entity = &self.document.area_lights[emitter.area_light];
+        let Some(emission) = tables.build_emission(entity, &mut self.context, area as f32) else { return };
+        self.attributes[id.0 as usize].first_light = Some(LightId(lights.len() as u32));
+        lights.extend(primitives.map(|primitive| Light::Area(AreaLight { geometry: id, primitive, emission })));
+    }
+
+    /// The choice belongs to the integrator's parameters, but is prepared with the scene.
+    fn light_sampler_kind(&mut self) -> LightSamplerKind {
+        let parameters = self.document.integrator.iter().flat_map(|entity| &entity.parameters);
+        let Some(parameter) = parameters.into_iter().find(|p| p.name == "lightsampler") else {
+            return LightSamplerKind::default();
+        };
+        let word = match &parameter.value {
+            Value::Strings(words) => words.first().map_or("", String::as_str),
+            _ => "",
+        };
+        match word {
+            "bvh" | "exhaustive" => LightSamplerKind::Tree,
+            "power" => LightSamplerKind::Power,
+            "uniform" => LightSamplerKind::Uniform,
+            unknown => {
+                let known = ["bvh", "power", "uniform"];
+                super::unknown_name(&mut self.context.diagnostics, parameter.span, "light sampler", unknown, known);
+                LightSamplerKind::default()
+            }
+        }
+    }
+}
