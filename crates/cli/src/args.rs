@@ -9,15 +9,15 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 /// Physically based rendering: spectral, reproducible, honest about its error.
 #[derive(Debug, Parser)]
 #[command(name = "etendue", version, about)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// What to do.
     #[command(subcommand)]
-    pub command: Command,
+    pub(crate) command: Command,
 }
 
 /// What to do.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Render a scene
     Render(RenderArguments),
     /// Tell what a scene holds
@@ -34,71 +34,71 @@ pub enum Command {
 
 /// Arguments of `render`.
 #[derive(Args, Debug)]
-pub struct RenderArguments {
+pub(crate) struct RenderArguments {
     /// Scene file (pbrt-v4, may be gzipped)
-    pub scene: PathBuf,
+    pub(crate) scene: PathBuf,
     /// Output: .exr (all layers and metadata), .png, .ppm, .pfm or .hdr; may repeat [default: the film's name]
     #[arg(short, long = "output", value_name = "OUT")]
-    pub outputs: Vec<PathBuf>,
+    pub(crate) outputs: Vec<PathBuf>,
     /// Integrator in place of the scene's, with parameters
     #[arg(long, value_name = "NAME[:key=value,...]")]
-    pub integrator: Option<String>,
+    pub(crate) integrator: Option<String>,
     /// Samples per pixel
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    pub spp: Option<u64>,
+    pub(crate) spp: Option<u64>,
     /// Stop after this time, such as 30s, 5m or 2h
     #[arg(long, value_name = "TIME", value_parser = parse_duration)]
-    pub time: Option<Duration>,
+    pub(crate) time: Option<Duration>,
     /// Stop once the relative standard error of the image falls below this
     #[arg(long, value_name = "E", value_parser = parse_positive)]
-    pub error: Option<f64>,
+    pub(crate) error: Option<f64>,
     /// Render passes A up to, not including, B; `merge` adds such parts exactly
     #[arg(long, value_name = "A..B", value_parser = parse_range, conflicts_with = "spp")]
-    pub passes: Option<Range<u64>>,
+    pub(crate) passes: Option<Range<u64>>,
     /// Random seed
     #[arg(long, value_name = "N")]
-    pub seed: Option<u64>,
+    pub(crate) seed: Option<u64>,
     /// Number of threads [default: all cores]; it does not change the image
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..1024))]
-    pub threads: Option<u64>,
+    pub(crate) threads: Option<u64>,
     /// Resolution in place of the film's
     #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
-    pub resolution: Option<[i32; 2]>,
+    pub(crate) resolution: Option<[i32; 2]>,
     /// Part of the image to render, in shares of its size
     #[arg(long, value_name = "x0,x1,y0,y1", value_parser = parse_crop)]
-    pub crop: Option<[f32; 4]>,
+    pub(crate) crop: Option<[f32; 4]>,
     /// Layer of the paths that an expression selects, such as caustic='LS+DE'; may repeat
     #[arg(long = "lpe", value_name = "NAME=EXPRESSION", value_parser = parse_named)]
-    pub expressions: Vec<(String, String)>,
+    pub(crate) expressions: Vec<(String, String)>,
     /// Layers bounce0, bounce1, ... of light that was scattered that many times, up to N
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..24))]
-    pub bounces: Option<u64>,
+    pub(crate) bounces: Option<u64>,
     /// Wavelengths of a path
     #[arg(long, value_enum)]
-    pub wavelengths: Option<WavelengthArgument>,
+    pub(crate) wavelengths: Option<WavelengthArgument>,
     /// File that keeps the state of the render
     #[arg(long, value_name = "FILE")]
-    pub checkpoint: Option<PathBuf>,
+    pub(crate) checkpoint: Option<PathBuf>,
     /// How often the checkpoint is written
     #[arg(long, value_name = "TIME", value_parser = parse_duration, default_value = "60s", requires = "checkpoint")]
-    pub every: Duration,
+    pub(crate) every: Duration,
     /// Go on from the checkpoint, if there is one
     #[arg(long, requires = "checkpoint")]
-    pub resume: bool,
+    pub(crate) resume: bool,
     /// Write statistics as JSON
     #[arg(long, value_name = "FILE")]
-    pub stats: Option<PathBuf>,
+    pub(crate) stats: Option<PathBuf>,
     /// Print errors alone
     #[arg(short, long)]
-    pub quiet: bool,
+    pub(crate) quiet: bool,
     /// Do not show progress
     #[arg(long)]
-    pub no_progress: bool,
+    pub(crate) no_progress: bool,
 }
 
 /// Wavelengths of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum WavelengthArgument {
+pub(crate) enum WavelengthArgument {
     /// Four wavelengths, rotated copies of a hero
     Hero,
     /// One random wavelength
@@ -107,29 +107,29 @@ pub enum WavelengthArgument {
 
 /// Arguments of `info`.
 #[derive(Args, Debug)]
-pub struct InfoArguments {
+pub(crate) struct InfoArguments {
     /// Scene file
-    pub scene: PathBuf,
+    pub(crate) scene: PathBuf,
     /// Print one JSON object
     #[arg(long)]
-    pub json: bool,
+    pub(crate) json: bool,
 }
 
 /// Arguments of `list`.
 #[derive(Args, Debug)]
-pub struct ListArguments {
+pub(crate) struct ListArguments {
     /// What to list
     #[arg(value_enum)]
-    pub kind: ListKind,
+    pub(crate) kind: ListKind,
     /// Print one JSON object
     #[arg(long)]
-    pub json: bool,
+    pub(crate) json: bool,
 }
 
 /// What can be listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[allow(missing_docs, reason = "each is what its name says")]
-pub enum ListKind {
+pub(crate) enum ListKind {
     Integrators,
     Materials,
     Textures,
@@ -147,81 +147,81 @@ pub enum ListKind {
 
 /// Arguments of `compare`.
 #[derive(Args, Debug)]
-pub struct CompareArguments {
+pub(crate) struct CompareArguments {
     /// Image to judge
-    pub image: PathBuf,
+    pub(crate) image: PathBuf,
     /// Image to judge it by
-    pub reference: PathBuf,
+    pub(crate) reference: PathBuf,
     /// Print one JSON object
     #[arg(long)]
-    pub json: bool,
+    pub(crate) json: bool,
     /// Write a false-colour picture of the difference
     #[arg(short, long = "output", value_name = "MAP")]
-    pub output: Option<PathBuf>,
+    pub(crate) output: Option<PathBuf>,
     /// What the picture shows
     #[arg(long, value_enum, default_value = "flip")]
-    pub map: MapArgument,
+    pub(crate) map: MapArgument,
     /// Clamp both images to this largest value first
     #[arg(long, value_name = "MAX")]
-    pub clamp: Option<f32>,
+    pub(crate) clamp: Option<f32>,
     /// Multiply the reference by this first
     #[arg(long, value_name = "FACTOR", default_value = "1")]
-    pub scale_reference: f32,
+    pub(crate) scale_reference: f32,
     /// Exposure for FLIP, in stops
     #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]
-    pub exposure: f32,
+    pub(crate) exposure: f32,
 }
 
 /// What a difference picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum MapArgument {
+pub(crate) enum MapArgument {
     /// FLIP error
     Flip,
     /// Absolute difference
     Absolute,
-    /// Difference relative to the reference
+    /// Squared difference relative to the reference
     Relative,
 }
 
 /// Arguments of `merge`.
 #[derive(Args, Debug)]
-pub struct MergeArguments {
+pub(crate) struct MergeArguments {
     /// EXR files of one scene
     #[arg(required = true, num_args = 2..)]
-    pub images: Vec<PathBuf>,
+    pub(crate) images: Vec<PathBuf>,
     /// Output; may repeat
     #[arg(short, long = "output", value_name = "OUT", required = true)]
-    pub outputs: Vec<PathBuf>,
+    pub(crate) outputs: Vec<PathBuf>,
 }
 
 /// Arguments of `tonemap`.
 #[derive(Args, Debug)]
-pub struct TonemapArguments {
+pub(crate) struct TonemapArguments {
     /// Image with linear radiance
-    pub image: PathBuf,
+    pub(crate) image: PathBuf,
     /// Output; may repeat
     #[arg(short, long = "output", value_name = "OUT", required = true)]
-    pub outputs: Vec<PathBuf>,
+    pub(crate) outputs: Vec<PathBuf>,
     /// Tone curve
     #[arg(long, value_enum, default_value = "clamp")]
-    pub operator: OperatorArgument,
+    pub(crate) operator: OperatorArgument,
     /// Exposure in stops, before the curve
     #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]
-    pub exposure: f32,
+    pub(crate) exposure: f32,
     /// Key of the photographic operator: what the log-average luminance becomes
     #[arg(long, default_value = "0.18", value_parser = parse_positive)]
-    pub key: f64,
+    pub(crate) key: f64,
     /// Scaled luminance that becomes white, of the photographic operator [default: infinite]
     #[arg(long, value_parser = parse_positive)]
-    pub white: Option<f64>,
+    pub(crate) white: Option<f64>,
     /// Hide the steps of 8-bit outputs in noise
     #[arg(long)]
-    pub dither: bool,
+    pub(crate) dither: bool,
 }
 
 /// A tone curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum OperatorArgument {
+pub(crate) enum OperatorArgument {
     /// Clip to [0, 1]
     Clamp,
     /// Divide by the largest value
@@ -270,8 +270,8 @@ fn parse_resolution(text: &str) -> Result<[i32; 2], String> {
 fn parse_crop(text: &str) -> Result<[f32; 4], String> {
     let malformed = || "a crop is x0,x1,y0,y1 between 0 and 1".to_owned();
     let numbers: Vec<f32> = text.split(',').map(str::parse).collect::<Result<_, _>>().map_err(|_| malformed())?;
-    match numbers.try_into() {
-        Ok([x0, x1, y0, y1]) if x0 < x1 && y0 < y1 => Ok([x0, x1, y0, y1]),
+    match numbers[..] {
+        [x0, x1, y0, y1] if x0 < x1 && y0 < y1 => Ok([x0, x1, y0, y1]),
         _ => Err(malformed()),
     }
 }

@@ -10,7 +10,7 @@ use crate::failure::{Failure, Result};
 use crate::list::print;
 
 /// Runs the command.
-pub fn run(arguments: &CompareArguments) -> Result<()> {
+pub(crate) fn run(arguments: &CompareArguments) -> Result<()> {
     let open = |path| read_image(path).map_err(|error| Failure::Usage(error.to_string()));
     let (image, mut reference) = (open(&arguments.image)?, open(&arguments.reference)?);
     scale(&mut reference, arguments.scale_reference);
@@ -20,12 +20,9 @@ pub fn run(arguments: &CompareArguments) -> Result<()> {
     let result = compare(&image, &reference, &settings).map_err(refuse)?;
     if let Some(path) = &arguments.output {
         let kind = match arguments.map {
-            MapArgument::Flip => DifferenceKind::Flip {
-                pixels_per_degree: settings.pixels_per_degree,
-                exposure_ev: settings.flip_exposure_ev,
-            },
+            MapArgument::Flip => DifferenceKind::Flip { pixels_per_degree: settings.pixels_per_degree },
             MapArgument::Absolute => DifferenceKind::Absolute,
-            MapArgument::Relative => DifferenceKind::Relative,
+            MapArgument::Relative => DifferenceKind::RelativeSquared,
         };
         let map = Pair::new(&image, &reference, clamp).map_err(refuse)?.difference(kind);
         let full_scale = if arguments.map == MapArgument::Absolute { map.max() } else { 1.0 };

@@ -2,7 +2,7 @@
 
 /// Why a command did not succeed.
 #[derive(Debug)]
-pub enum Failure {
+pub(crate) enum Failure {
     /// Something failed while running: exit code 1.
     Running(String),
     /// The command line or a file on it is wrong: exit code 2.
@@ -16,7 +16,7 @@ pub enum Failure {
 impl Failure {
     /// The exit code of the process.
     #[must_use]
-    pub const fn exit_code(&self) -> u8 {
+    pub(crate) const fn exit_code(&self) -> u8 {
         match self {
             Self::Running(_) => 1,
             Self::Usage(_) | Self::Scene => 2,
@@ -26,7 +26,7 @@ impl Failure {
 
     /// What is still to be said.
     #[must_use]
-    pub fn message(&self) -> Option<&str> {
+    pub(crate) fn message(&self) -> Option<&str> {
         match self {
             Self::Running(message) | Self::Usage(message) => Some(message),
             Self::Scene => None,
@@ -36,4 +36,4 @@ impl Failure {
 }
 
 /// The result of a command.
-pub type Result<T> = std::result::Result<T, Failure>;
+pub(crate) type Result<T> = std::result::Result<T, Failure>;

@@ -13,30 +13,30 @@ use crate::report;
 
 /// What the command line changes in a scene.
 #[derive(Clone, Debug, Default)]
-pub struct Overrides {
+pub(crate) struct Overrides {
     /// Pixels across and down.
-    pub resolution: Option<[i32; 2]>,
+    pub(crate) resolution: Option<[i32; 2]>,
     /// Part of the image in shares of its size.
-    pub crop: Option<[f32; 4]>,
+    pub(crate) crop: Option<[f32; 4]>,
     /// `NAME[:key=value,...]`.
-    pub integrator: Option<String>,
+    pub(crate) integrator: Option<String>,
     /// Word for the parameter `wavelengths` of the integrator.
-    pub wavelengths: Option<&'static str>,
+    pub(crate) wavelengths: Option<&'static str>,
 }
 
 /// A scene with the document it was built from.
 #[derive(Debug)]
-pub struct LoadedScene {
+pub(crate) struct LoadedScene {
     /// As written, with overrides.
-    pub document: Document,
+    pub(crate) document: Document,
     /// As built.
-    pub scene: Scene,
+    pub(crate) scene: Scene,
     /// Problems that do not keep it from rendering.
-    pub diagnostics: Diagnostics,
+    pub(crate) diagnostics: Diagnostics,
 }
 
 /// Reads and builds a scene; all problems are collected, and reported unless `quiet` leaves out the warnings.
-pub fn load(path: &Path, overrides: &Overrides, quiet: bool) -> Result<LoadedScene> {
+pub(crate) fn load(path: &Path, overrides: &Overrides, quiet: bool) -> Result<LoadedScene> {
     let (mut document, mut diagnostics) = read_pbrt(path);
     // A document with syntax errors still tells which of its files are missing.
     let (assets, problems) = load_assets(&document);
@@ -108,7 +108,7 @@ fn integrator_entity(text: &str) -> Result<Entity> {
 /// A hash of everything that determines the image but for the seed and the number of passes: the text of the scene,
 /// what the command line changed, and the layers.
 #[must_use]
-pub fn fingerprint(document: &Document, layers: &[(String, String)]) -> u64 {
+pub(crate) fn fingerprint(document: &Document, layers: &[(String, String)]) -> u64 {
     let mut bytes = Vec::new();
     for file in document.sources.files() {
         bytes.extend_from_slice(&hash_bytes(file.text.as_bytes()).to_le_bytes());

@@ -24,7 +24,7 @@ struct Part {
 }
 
 /// Runs the command.
-pub fn run(arguments: &MergeArguments) -> Result<()> {
+pub(crate) fn run(arguments: &MergeArguments) -> Result<()> {
     let parts = arguments.images.iter().map(|path| open(path)).collect::<Result<Vec<Part>>>()?;
     check_one_scene(&parts)?;
     let image = if parts.iter().all(|part| part.sums.is_some()) { merge_exactly(parts)? } else { average(parts)? };

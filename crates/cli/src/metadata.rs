@@ -8,21 +8,21 @@ use etendue::scene::film::PixelBounds;
 use etendue::scene::{Film, Scene};
 
 /// Keys of the metadata.
-pub const FINGERPRINT: &str = "etendue.fingerprint";
+pub(crate) const FINGERPRINT: &str = "etendue.fingerprint";
 /// Seed of the sampler.
-pub const SEED: &str = "etendue.seed";
+pub(crate) const SEED: &str = "etendue.seed";
 /// Passes in the image, as `0..8 16..24`.
-pub const PASSES: &str = "etendue.passes";
+pub(crate) const PASSES: &str = "etendue.passes";
 /// Samples per pixel.
-pub const SPP: &str = "etendue.spp";
+pub(crate) const SPP: &str = "etendue.spp";
 /// Rendered pixels: x0 x1 y0 y1 of the full image.
-pub const PIXELS: &str = "etendue.pixels";
+pub(crate) const PIXELS: &str = "etendue.pixels";
 /// Luminance of unit red, green and blue.
-pub const LUMINANCE: &str = "etendue.luminance";
+pub(crate) const LUMINANCE: &str = "etendue.luminance";
 
 /// Describes a render.
 #[must_use]
-pub fn describe(scene: &Scene, film: &Film, fingerprint: u64, scene_name: &str) -> BTreeMap<String, String> {
+pub(crate) fn describe(scene: &Scene, film: &Film, fingerprint: u64, scene_name: &str) -> BTreeMap<String, String> {
     let mut metadata = BTreeMap::new();
     let mut set = |key: &str, value: String| metadata.insert(key.to_owned(), value);
     set("software", format!("etendue {}", env!("CARGO_PKG_VERSION")));
@@ -60,7 +60,7 @@ fn format_passes(passes: &[Range<u64>]) -> String {
 
 /// Passes of an image.
 #[must_use]
-pub fn passes(image: &Image) -> Option<Vec<Range<u64>>> {
+pub(crate) fn passes(image: &Image) -> Option<Vec<Range<u64>>> {
     let text = image.metadata.get(PASSES)?;
     let ranges = text.split_whitespace().map(|range| {
         let (start, end) = range.split_once("..")?;
@@ -71,7 +71,7 @@ pub fn passes(image: &Image) -> Option<Vec<Range<u64>>> {
 
 /// Numbers of a metadata entry.
 #[must_use]
-pub fn numbers<T: std::str::FromStr, const N: usize>(image: &Image, key: &str) -> Option<[T; N]> {
+pub(crate) fn numbers<T: std::str::FromStr, const N: usize>(image: &Image, key: &str) -> Option<[T; N]> {
     let values: Vec<T> =
         image.metadata.get(key)?.split_whitespace().map(|n| n.parse().ok()).collect::<Option<_>>()?;
     values.try_into().ok()
@@ -79,7 +79,7 @@ pub fn numbers<T: std::str::FromStr, const N: usize>(image: &Image, key: &str) -
 
 /// Pixels of the full image that an image holds.
 #[must_use]
-pub fn pixels(image: &Image) -> Option<PixelBounds> {
+pub(crate) fn pixels(image: &Image) -> Option<PixelBounds> {
     let [x0, x1, y0, y1] = numbers(image, PIXELS)?;
     Some(PixelBounds { min: [x0, y0], max: [x1, y1] })
 }

@@ -18,12 +18,12 @@ static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// True once the user pressed Ctrl-C.
 #[must_use]
-pub fn is_interrupted() -> bool {
+pub(crate) fn is_interrupted() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
 /// The first Ctrl-C ends the render and writes what is finished; the second ends the process.
-pub fn catch_interruption() {
+pub(crate) fn catch_interruption() {
     let handler = || {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
@@ -36,20 +36,20 @@ pub fn catch_interruption() {
 
 /// Where and how often the state of the render is kept.
 #[derive(Clone, Debug)]
-pub struct CheckpointPlan {
+pub(crate) struct CheckpointPlan {
     /// The file.
-    pub path: PathBuf,
+    pub(crate) path: PathBuf,
     /// Time between writes.
-    pub every: Duration,
+    pub(crate) every: Duration,
     /// Identity of the render.
-    pub fingerprint: u64,
+    pub(crate) fingerprint: u64,
     /// Seed of the sampler.
-    pub seed: u64,
+    pub(crate) seed: u64,
 }
 
 impl CheckpointPlan {
     /// Writes the state; a failure is said, and the render goes on.
-    pub fn write(&self, film: &Film, state: Vec<u8>) {
+    pub(crate) fn write(&self, film: &Film, state: Vec<u8>) {
         let checkpoint = Checkpoint {
             fingerprint: self.fingerprint,
             seed: self.seed,
@@ -64,7 +64,7 @@ impl CheckpointPlan {
 }
 
 /// Watches a render.
-pub struct Watch {
+pub(crate) struct Watch {
     bar: ProgressBar,
     started: Instant,
     deadline: Option<Instant>,
@@ -84,7 +84,7 @@ impl fmt::Debug for Watch {
 impl Watch {
     /// Starts to watch a render of `n_samples` camera samples in `n_passes` passes.
     #[must_use]
-    pub fn new(
+    pub(crate) fn new(
         n_samples: u64,
         n_passes: u64,
         time: Option<Duration>,
@@ -120,13 +120,13 @@ impl Watch {
 
     /// Camera samples so far.
     #[must_use]
-    pub fn n_samples(&self) -> u64 {
+    pub(crate) fn n_samples(&self) -> u64 {
         self.n_samples.load(Ordering::Relaxed)
     }
 
     /// Rays so far.
     #[must_use]
-    pub fn rays(&self) -> RayCounts {
+    pub(crate) fn rays(&self) -> RayCounts {
         RayCounts {
             closest: self.closest.load(Ordering::Relaxed),
             shadow: self.shadow.load(Ordering::Relaxed),
@@ -135,12 +135,12 @@ impl Watch {
 
     /// Time since the start.
     #[must_use]
-    pub fn elapsed(&self) -> Duration {
+    pub(crate) fn elapsed(&self) -> Duration {
         self.started.elapsed()
     }
 
     /// Ends the progress bar and keeps the last state.
-    pub fn finish(&self, film: &Film, integrator: &dyn Integrator) {
+    pub(crate) fn finish(&self, film: &Film, integrator: &dyn Integrator) {
         self.bar.finish_and_clear();
         if let Some(plan) = &self.checkpoint {
             plan.write(film, integrator.save());
@@ -155,7 +155,7 @@ impl Watch {
 
 /// Whether to show a progress bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ShowProgress {
+pub(crate) enum ShowProgress {
     /// On standard error, if that is a terminal.
     Yes,
     /// Not at all.

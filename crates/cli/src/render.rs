@@ -30,7 +30,7 @@ struct Job {
 }
 
 /// Runs the command.
-pub fn run(arguments: &RenderArguments) -> Result<()> {
+pub(crate) fn run(arguments: &RenderArguments) -> Result<()> {
     let started = Instant::now();
     let threads = arguments.threads.map_or(0, |n| n as usize);
     let pool = rayon::ThreadPoolBuilder::new()
@@ -177,7 +177,7 @@ fn write_outputs(arguments: &RenderArguments, job: &Job) -> Result<()> {
 }
 
 /// Writes an image to several files; all are tried before the first failure is reported.
-pub fn write_all(outputs: &[PathBuf], image: &Image) -> Result<()> {
+pub(crate) fn write_all(outputs: &[PathBuf], image: &Image) -> Result<()> {
     let failures: Vec<String> =
         outputs.iter().filter_map(|path| write_image(path, image).err()).map(|error| error.to_string()).collect();
     if failures.is_empty() { Ok(()) } else { Err(Failure::Running(failures.join("\n"))) }

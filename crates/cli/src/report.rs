@@ -7,22 +7,22 @@ use ariadne::{Color, Config, IndexType, Label, Report, ReportKind, Source};
 use etendue::scene::{Diagnostic, Diagnostics, Severity, Sources};
 
 /// Says something that is neither error nor warning.
-pub fn note(message: &str) {
+pub(crate) fn note(message: &str) {
     eprintln!("{message}");
 }
 
 /// Says that something failed.
-pub fn error(message: &str) {
+pub(crate) fn error(message: &str) {
     eprintln!("error: {message}");
 }
 
 /// Says that something may not be as meant.
-pub fn warning(message: &str) {
+pub(crate) fn warning(message: &str) {
     eprintln!("warning: {message}");
 }
 
 /// Prints all problems, with `file:line:column`, an excerpt and how to mend them. Quiet leaves warnings out.
-pub fn diagnostics(diagnostics: &Diagnostics, sources: &Sources, quiet: bool) {
+pub(crate) fn diagnostics(diagnostics: &Diagnostics, sources: &Sources, quiet: bool) {
     for diagnostic in diagnostics.list() {
         if !quiet || diagnostic.severity == Severity::Error {
             one(diagnostic, sources);

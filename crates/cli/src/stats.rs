@@ -10,46 +10,46 @@ use crate::failure::{Failure, Result};
 
 /// Statistics of a render; the names are stable.
 #[derive(Clone, Debug, Serialize)]
-pub struct Statistics {
+pub(crate) struct Statistics {
     /// Version of the program.
-    pub version: &'static str,
+    pub(crate) version: &'static str,
     /// Method.
-    pub integrator: String,
+    pub(crate) integrator: String,
     /// Wall time from start to end.
-    pub seconds_total: f64,
+    pub(crate) seconds_total: f64,
     /// Wall time of reading and building.
-    pub seconds_build: f64,
+    pub(crate) seconds_build: f64,
     /// Wall time of rendering.
-    pub seconds_render: f64,
+    pub(crate) seconds_render: f64,
     /// Processor time of all threads, user and system; 0 where the system does not tell.
-    pub cpu_seconds: f64,
+    pub(crate) cpu_seconds: f64,
     /// Passes in the image.
-    pub passes: u64,
+    pub(crate) passes: u64,
     /// Samples per pixel in the image.
-    pub spp: u64,
+    pub(crate) spp: u64,
     /// Camera samples taken in this run.
-    pub samples: u64,
+    pub(crate) samples: u64,
     /// Rays that looked for the nearest hit.
-    pub rays: u64,
+    pub(crate) rays: u64,
     /// Rays that asked for visibility.
-    pub shadow_rays: u64,
+    pub(crate) shadow_rays: u64,
     /// Photons stored; none by this method.
-    pub photons_stored: u64,
+    pub(crate) photons_stored: u64,
     /// Largest resident memory of the process; 0 where the system does not tell.
-    pub peak_memory_bytes: u64,
+    pub(crate) peak_memory_bytes: u64,
     /// Threads that rendered.
-    pub threads: usize,
+    pub(crate) threads: usize,
     /// Samples of NaN, infinite or negative radiance, taken as black.
-    pub nan_samples: u64,
+    pub(crate) nan_samples: u64,
     /// Samples beyond what a sum can hold.
-    pub saturated_samples: u64,
+    pub(crate) saturated_samples: u64,
     /// Relative standard error of the image.
-    pub relative_error: Option<f64>,
+    pub(crate) relative_error: Option<f64>,
 }
 
 impl Statistics {
     /// Adds what the system knows of the process.
-    pub fn measure_process(&mut self, rays: RayCounts) {
+    pub(crate) fn measure_process(&mut self, rays: RayCounts) {
         self.rays = rays.closest;
         self.shadow_rays = rays.shadow;
         self.cpu_seconds = cpu_time().map_or(0.0, |t| t.as_secs_f64());
@@ -57,7 +57,7 @@ impl Statistics {
     }
 
     /// Writes them as JSON.
-    pub fn write(&self, path: &Path) -> Result<()> {
+    pub(crate) fn write(&self, path: &Path) -> Result<()> {
         let failed = |error: String| Failure::Running(format!("cannot write {}: {error}", path.display()));
         let text = serde_json::to_string_pretty(self).map_err(|error| failed(error.to_string()))?;
         std::fs::write(path, text + "\n").map_err(|error| failed(error.to_string()))

@@ -7,7 +7,7 @@ use crate::args::{OperatorArgument, TonemapArguments};
 use crate::failure::{Failure, Result};
 
 /// Runs the command.
-pub fn run(arguments: &TonemapArguments) -> Result<()> {
+pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
     let image = read_image(&arguments.image).map_err(|error| Failure::Usage(error.to_string()))?;
     if image.rgb_pixels().is_none() {
         return Err(Failure::Usage(format!("{}: there are no channels R, G, B or Y", arguments.image.display())));

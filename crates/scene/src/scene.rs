@@ -1,7 +1,7 @@
 //! The immutable scene: everything that a method of light transport may ask.
 
-use etendue_geometry::{Geometry, GeometryId, Hit, Reference, SurfacePoint};
-use etendue_math::{Bounds3, Point3, Ray, SamplerSettings, Vector3, hash64, offset_ray_origin};
+use etendue_geometry::{Geometry, Hit, Reference, SurfacePoint};
+use etendue_math::{Bounds3, Ray, SamplerSettings, Vector3, hash64, offset_ray_origin};
 use etendue_spectrum::{Sampled, Wavelengths};
 
 use crate::bsdf::Bsdf;

@@ -129,7 +129,7 @@ impl Camera {
 
     /// Placement at a time in seconds.
     #[inline]
-    fn transform_at(&self, time: f32) -> Transform {
+    pub fn transform_at(&self, time: f32) -> Transform {
         if self.world_from_camera.is_animated() {
             self.world_from_camera.at(time)
         } else {
