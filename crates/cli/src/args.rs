@@ -269,7 +269,8 @@ fn parse_resolution(text: &str) -> Result<[i32; 2], String> {
 
 fn parse_crop(text: &str) -> Result<[f32; 4], String> {
     let malformed = || "a crop is x0,x1,y0,y1 between 0 and 1".to_owned();
-    let numbers: Vec<f32> = text.split(',').map(str::parse).collect::<Result<_, _>>().map_err(|_| malformed())?;
+    let numbers: Vec<f32> =
+        text.split(',').map(str::parse).collect::<Result<_, _>>().map_err(|_| malformed())?;
     match numbers[..] {
         [x0, x1, y0, y1] if x0 < x1 && y0 < y1 => Ok([x0, x1, y0, y1]),
         _ => Err(malformed()),
@@ -277,7 +278,8 @@ fn parse_crop(text: &str) -> Result<[f32; 4], String> {
 }
 
 fn parse_named(text: &str) -> Result<(String, String), String> {
-    let (name, expression) = text.split_once('=').ok_or("a layer is NAME=EXPRESSION, such as caustic=LS+DE")?;
+    let (name, expression) =
+        text.split_once('=').ok_or("a layer is NAME=EXPRESSION, such as caustic=LS+DE")?;
     Ok((name.to_owned(), expression.to_owned()))
 }
 

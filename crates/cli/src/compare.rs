@@ -1,7 +1,7 @@
 //! `etendue compare`.
 
-use etendue::image::compare::{CompareError, DifferenceKind, Pair, Settings, compare};
 use etendue::image::Image;
+use etendue::image::compare::{CompareError, DifferenceKind, Pair, Settings, compare};
 use etendue::io::images::{read_image, write_image};
 use serde_json::json;
 
@@ -26,7 +26,8 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<()> {
         };
         let map = Pair::new(&image, &reference, clamp).map_err(refuse)?.difference(kind);
         let full_scale = if arguments.map == MapArgument::Absolute { map.max() } else { 1.0 };
-        write_image(path, &map.to_false_colors(full_scale)).map_err(|error| Failure::Running(error.to_string()))?;
+        write_image(path, &map.to_false_colors(full_scale))
+            .map_err(|error| Failure::Running(error.to_string()))?;
     }
     let rows = [
         ("mse", result.mse),

@@ -83,7 +83,8 @@ fn items(kind: ListKind) -> Vec<Item> {
             .collect(),
         ListKind::Materials => MATERIALS.iter().map(|m| Item::new(m.name, m.doc, m.parameters)).collect(),
         ListKind::Textures => {
-            let spectra_only = SPECTRUM_TEXTURES.iter().filter(|(n, _)| !FLOAT_TEXTURES.iter().any(|(f, _)| f == n));
+            let spectra_only =
+                SPECTRUM_TEXTURES.iter().filter(|(n, _)| !FLOAT_TEXTURES.iter().any(|(f, _)| f == n));
             let mut items = tabled(FLOAT_TEXTURES);
             items.extend(spectra_only.map(|(name, parameters)| Item::new(name, "spectra alone", parameters)));
             items
@@ -97,7 +98,9 @@ fn items(kind: ListKind) -> Vec<Item> {
         ListKind::Films => tabled(FILMS),
         ListKind::Samplers => tabled(SAMPLERS),
         ListKind::Filters => tabled(FILTERS),
-        ListKind::Accelerators => vec![Item::new("bvh", "bounding volume hierarchy by the surface area heuristic", &[])],
+        ListKind::Accelerators => {
+            vec![Item::new("bvh", "bounding volume hierarchy by the surface area heuristic", &[])]
+        }
         ListKind::Tonemappers => [
             ("clamp", "clip to [0, 1]"),
             ("maximum", "divide by the largest value"),

@@ -86,7 +86,9 @@ fn integrator_entity(text: &str) -> Result<Entity> {
     let specs = INTEGRATORS.iter().find(|m| m.name == name).unwrap_or(&INTEGRATORS[0]).parameters;
     for setting in settings.split(',').filter(|s| !s.is_empty()) {
         let (key, value) = setting.split_once('=').ok_or_else(|| {
-            Failure::Usage(format!("'{setting}' is not a parameter; write --integrator NAME:key=value,key=value"))
+            Failure::Usage(format!(
+                "'{setting}' is not a parameter; write --integrator NAME:key=value,key=value"
+            ))
         })?;
         let kind = specs.iter().find(|spec| spec.name == key).map_or("string", |spec| spec.kind);
         let wrong = || Failure::Usage(format!("'{value}' is not a value of type {kind} for {key}"));
@@ -98,7 +100,10 @@ fn integrator_entity(text: &str) -> Result<Entity> {
         };
         if !specs.iter().any(|spec| spec.name == key) {
             let known: Vec<&str> = specs.iter().map(|spec| spec.name).collect();
-            return Err(Failure::Usage(format!("{name} has no parameter {key}; it has {}", known.join(", "))));
+            return Err(Failure::Usage(format!(
+                "{name} has no parameter {key}; it has {}",
+                known.join(", ")
+            )));
         }
         entity.parameters.push(Parameter::new(key, value));
     }

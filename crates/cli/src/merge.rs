@@ -27,7 +27,8 @@ struct Part {
 pub(crate) fn run(arguments: &MergeArguments) -> Result<()> {
     let parts = arguments.images.iter().map(|path| open(path)).collect::<Result<Vec<Part>>>()?;
     check_one_scene(&parts)?;
-    let image = if parts.iter().all(|part| part.sums.is_some()) { merge_exactly(parts)? } else { average(parts)? };
+    let image =
+        if parts.iter().all(|part| part.sums.is_some()) { merge_exactly(parts)? } else { average(parts)? };
     render::write_all(&arguments.outputs, &image)
 }
 
@@ -54,7 +55,8 @@ fn check_one_scene(parts: &[Part]) -> Result<()> {
     let first = &parts[0];
     for part in &parts[1..] {
         if part.fingerprint != first.fingerprint {
-            let message = format!("{} and {} are not of the same scene, film and integrator", first.name, part.name);
+            let message =
+                format!("{} and {} are not of the same scene, film and integrator", first.name, part.name);
             return Err(Failure::Usage(message));
         }
         if part.image.metadata.get("software") != first.image.metadata.get("software") {
@@ -76,7 +78,10 @@ fn merge_exactly(parts: Vec<Part>) -> Result<Image> {
         if seeds == [part.seed.clone()] {
             sums.merge(addend).map_err(|error| refuse(error.to_string()))?;
         } else if seeds.contains(&part.seed) {
-            return Err(refuse(format!("seed {} is in the sum already; merge each seed by itself first", part.seed)));
+            return Err(refuse(format!(
+                "seed {} is in the sum already; merge each seed by itself first",
+                part.seed
+            )));
         } else {
             sums.merge_independent(addend).map_err(|error| refuse(error.to_string()))?;
             seeds.push(part.seed.clone());

@@ -22,7 +22,12 @@ pub(crate) const LUMINANCE: &str = "etendue.luminance";
 
 /// Describes a render.
 #[must_use]
-pub(crate) fn describe(scene: &Scene, film: &Film, fingerprint: u64, scene_name: &str) -> BTreeMap<String, String> {
+pub(crate) fn describe(
+    scene: &Scene,
+    film: &Film,
+    fingerprint: u64,
+    scene_name: &str,
+) -> BTreeMap<String, String> {
     let mut metadata = BTreeMap::new();
     let mut set = |key: &str, value: String| metadata.insert(key.to_owned(), value);
     set("software", format!("etendue {}", env!("CARGO_PKG_VERSION")));

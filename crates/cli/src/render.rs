@@ -97,7 +97,8 @@ fn prepare(arguments: &RenderArguments) -> Result<Job> {
 /// Named expressions, those of `--bounces` first.
 fn layers(arguments: &RenderArguments) -> Vec<(String, String)> {
     let bounces = arguments.bounces.map(|n| 0..=n).into_iter().flatten();
-    let mut layers: Vec<(String, String)> = bounces.map(|k| (format!("bounce{k}"), format!("L.{{{k}}}E"))).collect();
+    let mut layers: Vec<(String, String)> =
+        bounces.map(|k| (format!("bounce{k}"), format!("L.{{{k}}}E"))).collect();
     layers.extend(arguments.expressions.iter().cloned());
     layers
 }
@@ -148,8 +149,8 @@ fn resume(job: &mut Job) -> Result<()> {
         report::note(&format!("{path} does not exist yet; starting from the beginning"));
         return Ok(());
     }
-    let checkpoint =
-        read_checkpoint(&plan.path).map_err(|error| Failure::Usage(format!("cannot resume from {path}: {error}")))?;
+    let checkpoint = read_checkpoint(&plan.path)
+        .map_err(|error| Failure::Usage(format!("cannot resume from {path}: {error}")))?;
     let refuse = |reason: &str| Err(Failure::Usage(format!("cannot resume from {path}: {reason}")));
     if checkpoint.fingerprint != plan.fingerprint {
         return refuse("it belongs to another scene, resolution, integrator or set of layers");
@@ -178,8 +179,11 @@ fn write_outputs(arguments: &RenderArguments, job: &Job) -> Result<()> {
 
 /// Writes an image to several files; all are tried before the first failure is reported.
 pub(crate) fn write_all(outputs: &[PathBuf], image: &Image) -> Result<()> {
-    let failures: Vec<String> =
-        outputs.iter().filter_map(|path| write_image(path, image).err()).map(|error| error.to_string()).collect();
+    let failures: Vec<String> = outputs
+        .iter()
+        .filter_map(|path| write_image(path, image).err())
+        .map(|error| error.to_string())
+        .collect();
     if failures.is_empty() { Ok(()) } else { Err(Failure::Running(failures.join("\n"))) }
 }
 
@@ -193,7 +197,10 @@ fn report_faults(film: &Film) {
         ));
     }
     if faults.saturated > 0 {
-        report::warning(&format!("{} samples were too bright for the film and are cut off", faults.saturated));
+        report::warning(&format!(
+            "{} samples were too bright for the film and are cut off",
+            faults.saturated
+        ));
     }
 }
 

@@ -10,7 +10,10 @@ use crate::failure::{Failure, Result};
 pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
     let image = read_image(&arguments.image).map_err(|error| Failure::Usage(error.to_string()))?;
     if image.rgb_pixels().is_none() {
-        return Err(Failure::Usage(format!("{}: there are no channels R, G, B or Y", arguments.image.display())));
+        return Err(Failure::Usage(format!(
+            "{}: there are no channels R, G, B or Y",
+            arguments.image.display()
+        )));
     }
     let operator = match arguments.operator {
         OperatorArgument::Clamp => Operator::Clamp,

@@ -10,8 +10,12 @@ use crate::document::Entity;
 use crate::film::FilmSettings;
 use crate::filter::Filter;
 use crate::light::{Light, LightContext, LightId, LightPoint, LightSampler, LightTables};
-use crate::material::{MaterialContext, MaterialId, Materials};
+use crate::material::{Material, MaterialContext};
 use crate::texture::{FloatTexture, TextureContext, Textures};
+
+/// Index of a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MaterialId(pub u32);
 
 /// What a scene knows of a shape beyond its geometry.
 #[derive(Clone, Copy, Debug)]
@@ -68,8 +72,8 @@ pub struct Scene {
     pub attributes: Vec<ShapeAttributes>,
     /// Textures, images and tabulated spectra.
     pub textures: Textures,
-    /// Materials.
-    pub materials: Materials,
+    /// Materials by id.
+    pub materials: Vec<Material>,
     /// Lights by id.
     pub lights: Vec<Light>,
     /// Arenas behind the ids that lights hold.
@@ -113,6 +117,13 @@ impl Scene {
     #[must_use]
     pub fn light(&self, id: LightId) -> &Light {
         &self.lights[id.0 as usize]
+    }
+
+    /// The material of that id.
+    #[inline]
+    #[must_use]
+    pub fn material(&self, id: MaterialId) -> &Material {
+        &self.materials[id.0 as usize]
     }
 
     /// The nearest surface that the ray meets before `t_max`.
@@ -177,7 +188,7 @@ impl Scene {
     /// Materials that disperse reduce `lambda` to its first wavelength.
     #[must_use]
     pub fn bsdf(&self, surface: &Surface, lambda: &mut Wavelengths) -> Option<Bsdf> {
-        self.materials.bsdf(surface.material, &self.textures, &self.material_context(surface), lambda)
+        self.material(surface.material).bsdf(&self.textures, &self.material_context(surface), lambda)
     }
 
     fn material_context(&self, surface: &Surface) -> MaterialContext {
@@ -197,7 +208,7 @@ impl Scene {
             dvdy,
             face_index: point.face_index,
         };
-        MaterialContext::new(point, texture, surface.wo)
+        MaterialContext::new(texture, point, surface.wo)
     }
 
     /// Radiance in W/(m^2 sr nm) that a surface emits back along the path.
@@ -232,7 +243,7 @@ impl Scene {
         let blocked = if self.has_passable {
             self.geometry.occluded(ray, t_max, &|hit: &Hit| {
                 let material = self.attributes[hit.geometry.0 as usize].material;
-                !self.materials.is_interface(material) && self.is_opaque(ray, hit)
+                !self.material(material).is_interface() && self.is_opaque(ray, hit)
             })
         } else {
             self.geometry.occluded(ray, t_max, &|_| true)

@@ -21,7 +21,9 @@ impl Builder<'_, '_> {
             let message = "the camera \"realistic\" is not available yet; \"perspective\" stands in for it";
             self.context.diagnostics.warning(entity.span, message);
             entity.type_name = "perspective".to_owned();
-            entity.parameters.retain(|p| matches!(p.name.as_str(), "shutteropen" | "shutterclose" | "focaldistance"));
+            entity
+                .parameters
+                .retain(|p| matches!(p.name.as_str(), "shutteropen" | "shutterclose" | "focaldistance"));
         }
         let corner = |p: [u32; 2]| Point2::new(p[0] as f32, p[1] as f32);
         let crop = Bounds2::new(corner(film.crop.min), corner(film.crop.max));

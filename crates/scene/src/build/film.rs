@@ -111,11 +111,17 @@ fn read_crop(p: &mut Parameters<'_, '_>, resolution: [u32; 2]) -> PixelBounds {
     let (crop, name) = match (window, bounds) {
         (_, Some(&[x0, x1, y0, y1])) => {
             let pixel = |v: i32, axis: usize| v.clamp(0, resolution[axis] as i32) as u32;
-            (PixelBounds { min: [pixel(x0, 0), pixel(y0, 1)], max: [pixel(x1, 0), pixel(y1, 1)] }, "pixelbounds")
+            (
+                PixelBounds { min: [pixel(x0, 0), pixel(y0, 1)], max: [pixel(x1, 0), pixel(y1, 1)] },
+                "pixelbounds",
+            )
         }
         (Some(&[x0, x1, y0, y1]), None) => {
             let pixel = |v: f32, axis: usize| (v.clamp(0.0, 1.0) * resolution[axis] as f32).ceil() as u32;
-            (PixelBounds { min: [pixel(x0, 0), pixel(y0, 1)], max: [pixel(x1, 0), pixel(y1, 1)] }, "cropwindow")
+            (
+                PixelBounds { min: [pixel(x0, 0), pixel(y0, 1)], max: [pixel(x1, 0), pixel(y1, 1)] },
+                "cropwindow",
+            )
         }
         (None, None) => return full,
         (_, Some(_)) => return wrong_crop(p, "pixelbounds", full),
@@ -152,7 +158,10 @@ fn read_spectral(p: &mut Parameters<'_, '_>) -> FilmKind {
     let max_nm = p.float("lambdamax", 830.0);
     if !(1..=1024).contains(&n_buckets) || min_nm >= max_nm {
         let span = p.span();
-        p.diagnostics().error(span, "a spectral film needs 1 to 1024 \"nbuckets\" between \"lambdamin\" and \"lambdamax\"");
+        p.diagnostics().error(
+            span,
+            "a spectral film needs 1 to 1024 \"nbuckets\" between \"lambdamin\" and \"lambdamax\"",
+        );
         return FilmKind::Rgb;
     }
     FilmKind::Spectral { n_buckets: n_buckets as usize, min_nm, max_nm }
@@ -162,8 +171,10 @@ fn read_sensor(p: &mut Parameters<'_, '_>, document: &Document) -> Sensor {
     let name = p.string("sensor", "cie1931");
     if name != "cie1931" {
         let span = p.span_of("sensor");
-        p.diagnostics()
-            .warning(span, format!("the sensor \"{name}\" is not available yet; \"cie1931\" stands in for it"));
+        p.diagnostics().warning(
+            span,
+            format!("the sensor \"{name}\" is not available yet; \"cie1931\" stands in for it"),
+        );
     }
     let white_balance = p.float("whitebalance", 0.0);
     Sensor::cie1931(&SensorSettings {

@@ -19,7 +19,8 @@ pub(super) struct BuiltLights {
 
 impl Builder<'_, '_> {
     pub(super) fn build_lights(&mut self, geometry: &Geometry) -> BuiltLights {
-        let mut tables = LightTables { scene_sphere: SceneSphere::around(geometry.bounds()), ..LightTables::default() };
+        let mut tables =
+            LightTables { scene_sphere: SceneSphere::around(geometry.bounds()), ..LightTables::default() };
         let mut lights = Vec::new();
         for entity in &self.document.lights {
             lights.extend(tables.build_light(entity, &mut self.context));
@@ -49,7 +50,8 @@ impl Builder<'_, '_> {
         let entity = &self.document.area_lights[emitter.area_light];
         let Some(emission) = tables.build_emission(entity, &mut self.context, area as f32) else { return };
         self.attributes[id.0 as usize].first_light = Some(LightId(lights.len() as u32));
-        lights.extend(primitives.map(|primitive| Light::Area(AreaLight { geometry: id, primitive, emission })));
+        lights
+            .extend(primitives.map(|primitive| Light::Area(AreaLight { geometry: id, primitive, emission })));
     }
 
     /// The choice belongs to the integrator's parameters, but is prepared with the scene.
@@ -68,7 +70,13 @@ impl Builder<'_, '_> {
             "uniform" => LightSamplerKind::Uniform,
             unknown => {
                 let known = ["bvh", "power", "uniform"];
-                super::unknown_name(&mut self.context.diagnostics, parameter.span, "light sampler", unknown, known);
+                super::unknown_name(
+                    &mut self.context.diagnostics,
+                    parameter.span,
+                    "light sampler",
+                    unknown,
+                    known,
+                );
                 LightSamplerKind::default()
             }
         }

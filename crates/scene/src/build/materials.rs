@@ -4,8 +4,9 @@
 use std::collections::HashMap;
 
 use crate::document::{Entity, MaterialEntity, Value};
-use crate::material::{MaterialId, Materials, build_material};
+use crate::material::Material;
 use crate::parameters::Parameters;
+use crate::scene::MaterialId;
 
 use super::Builder;
 
@@ -13,30 +14,34 @@ use super::Builder;
 const MISSING_MATERIALS: &[&str] = &["hair", "measured", "subsurface"];
 
 impl Builder<'_, '_> {
-    pub(super) fn build_materials(&mut self) -> Materials {
-        let mut materials = Materials::new();
-        let fallback = materials.add_default();
+    pub(super) fn build_materials(&mut self) -> Vec<Material> {
         let document = self.document;
-        self.material_ids = vec![fallback; document.materials.len()];
+        let mut materials = vec![Material::default()];
+        let mut named: HashMap<String, Material> = HashMap::new();
+        self.material_ids = vec![MaterialId(0); document.materials.len()];
         for index in self.order_of_materials() {
             let MaterialEntity { name, entity } = &document.materials[index];
-            let id = self.build_material(entity, &mut materials).unwrap_or(fallback);
+            let material = self.build_material(entity, &named).unwrap_or_default();
+            let id = MaterialId(materials.len() as u32);
             self.material_ids[index] = id;
             if let Some(name) = name {
                 self.named_materials.insert(name.clone(), id);
+                named.insert(name.clone(), material.clone());
             }
+            materials.push(material);
         }
         materials
     }
 
-    fn build_material(&mut self, entity: &Entity, materials: &mut Materials) -> Option<MaterialId> {
+    fn build_material(&mut self, entity: &Entity, named: &HashMap<String, Material>) -> Option<Material> {
         let name = entity.type_name.as_str();
         if MISSING_MATERIALS.contains(&name) {
-            let message = format!("the material \"{name}\" is not available yet; grey \"diffuse\" stands in for it");
+            let message =
+                format!("the material \"{name}\" is not available yet; grey \"diffuse\" stands in for it");
             self.context.diagnostics.warning(entity.span, message);
             return None;
         }
-        build_material(Parameters::new(entity, &mut self.context), materials, &self.named_materials)
+        Material::build(Parameters::new(entity, &mut self.context), named)
     }
 
     /// Indices of the materials, parts of mixtures before the mixtures. Where mixtures contain each other in a
@@ -95,9 +100,10 @@ fn visit(
 /// Names of the parts of a mixture.
 fn parts(entity: &Entity) -> impl Iterator<Item = &str> {
     let materials = entity.parameters.iter().filter(|p| p.name == "materials" && entity.type_name == "mix");
-    materials.flat_map(|p| match &p.value {
-        Value::Strings(names) => names.as_slice(),
-        _ => &[],
-    })
-    .map(String::as_str)
+    materials
+        .flat_map(|p| match &p.value {
+            Value::Strings(names) => names.as_slice(),
+            _ => &[],
+        })
+        .map(String::as_str)
 }

@@ -20,8 +20,7 @@ use crate::assets::Assets;
 use crate::diagnostics::{Diagnostics, Span, nearest_name};
 use crate::document::{Document, Entity, InstanceEntity};
 use crate::parameters::{BuildContext, ParameterSpec};
-use crate::material::MaterialId;
-use crate::scene::{Scene, ShapeAttributes};
+use crate::scene::{MaterialId, Scene, ShapeAttributes};
 use crate::texture::Textures;
 
 pub use film::{FILMS, SAMPLERS};
@@ -78,7 +77,8 @@ impl Scene {
             return (None, context.diagnostics);
         }
         let has_alpha = attributes.iter().any(|a| a.alpha.is_some());
-        let has_passable = has_alpha || attributes.iter().any(|a| materials.is_interface(a.material));
+        let has_passable =
+            has_alpha || attributes.iter().any(|a| materials[a.material.0 as usize].is_interface());
         let scene = Self {
             geometry,
             attributes,
@@ -123,7 +123,11 @@ impl Builder<'_, '_> {
         geometry.build()
     }
 
-    fn find_object(&mut self, objects: &HashMap<&str, ObjectId>, instance: &InstanceEntity) -> Option<ObjectId> {
+    fn find_object(
+        &mut self,
+        objects: &HashMap<&str, ObjectId>,
+        instance: &InstanceEntity,
+    ) -> Option<ObjectId> {
         let found = objects.get(instance.object.as_str()).copied();
         if found.is_none() {
             let diagnostics = &mut self.context.diagnostics;
@@ -136,7 +140,10 @@ impl Builder<'_, '_> {
         for medium in &self.document.media {
             self.context.diagnostics.warning(
                 medium.entity.span,
-                format!("participating media are not available yet; \"{}\" is rendered as empty space", medium.name),
+                format!(
+                    "participating media are not available yet; \"{}\" is rendered as empty space",
+                    medium.name
+                ),
             );
         }
     }
@@ -149,13 +156,17 @@ impl Builder<'_, '_> {
                 let message = "the accelerator \"kdtree\" is not available yet; \"bvh\" stands in for it";
                 self.context.diagnostics.warning(entity.span, message);
             }
-            unknown => unknown_name(&mut self.context.diagnostics, entity.span, "accelerator", unknown, ["bvh"]),
+            unknown => {
+                unknown_name(&mut self.context.diagnostics, entity.span, "accelerator", unknown, ["bvh"])
+            }
         }
     }
 }
 
 /// Names of a table of types.
-fn known_names(table: &'static [(&'static str, &'static [ParameterSpec])]) -> impl Iterator<Item = &'static str> {
+fn known_names(
+    table: &'static [(&'static str, &'static [ParameterSpec])],
+) -> impl Iterator<Item = &'static str> {
     table.iter().map(|(name, _)| *name)
 }
 

@@ -2,15 +2,16 @@
 
 use std::collections::HashMap;
 
-use etendue_geometry::{BilinearMesh, GeometryBuilder, GeometryId, ObjectId, Shape, TriangleMesh, loop_subdivide};
+use etendue_geometry::{
+    BilinearMesh, GeometryBuilder, GeometryId, ObjectId, Shape, TriangleMesh, loop_subdivide,
+};
 use etendue_math::{Normal3, Point2, Vector3};
 
 use crate::assets::LoadedMesh;
 use crate::diagnostics::Span;
 use crate::document::{MaterialReference, ShapeEntity};
 use crate::parameters::{ParameterSpec, Parameters};
-use crate::material::MaterialId;
-use crate::scene::ShapeAttributes;
+use crate::scene::{MaterialId, ShapeAttributes};
 use crate::texture::FloatTexture;
 
 use super::{Builder, known_names, unknown_name};
@@ -67,8 +68,10 @@ const TRIANGLE_MESH: &[ParameterSpec] = &[
     spec!("faceIndices", "integer", "", "", "a number for each face"),
     ALPHA,
 ];
-const PLY_MESH: &[ParameterSpec] =
-    &[spec!("filename", "string", "", "", "PLY file, plain or gzipped; quadrilaterals become bilinear patches"), ALPHA];
+const PLY_MESH: &[ParameterSpec] = &[
+    spec!("filename", "string", "", "", "PLY file, plain or gzipped; quadrilaterals become bilinear patches"),
+    ALPHA,
+];
 const BILINEAR_MESH: &[ParameterSpec] = &[
     spec!("P", "point3", "", "m", "vertex positions"),
     spec!("indices", "integer", "0 1 2 3", "", "four vertices for each patch: (0,0) (1,0) (0,1) (1,1)"),
@@ -190,7 +193,13 @@ impl Builder<'_, '_> {
                     return *id;
                 }
                 let names: Vec<String> = self.named_materials.keys().cloned().collect();
-                unknown_name(&mut self.context.diagnostics, *span, "material", name, names.iter().map(String::as_str));
+                unknown_name(
+                    &mut self.context.diagnostics,
+                    *span,
+                    "material",
+                    name,
+                    names.iter().map(String::as_str),
+                );
                 MaterialId(0)
             }
         }
@@ -207,7 +216,9 @@ impl Builder<'_, '_> {
             return None;
         }
         if entity.world_from_object.is_animated() {
-            self.context.diagnostics.warning(span, "a moving shape cannot be a light; the area light is ignored here");
+            self.context
+                .diagnostics
+                .warning(span, "a moving shape cannot be a light; the area light is ignored here");
             return None;
         }
         Some(area_light)
@@ -326,7 +337,11 @@ fn read_face_indices(p: &mut Parameters<'_, '_>) -> Vec<i32> {
     p.integers("faceIndices").unwrap_or_default().to_vec()
 }
 
-fn report_mesh<E: std::fmt::Display>(p: &mut Parameters<'_, '_>, span: Option<Span>, result: Result<(), E>) -> Option<()> {
+fn report_mesh<E: std::fmt::Display>(
+    p: &mut Parameters<'_, '_>,
+    span: Option<Span>,
+    result: Result<(), E>,
+) -> Option<()> {
     match result {
         Ok(()) => Some(()),
         Err(error) => {
@@ -392,7 +407,8 @@ fn read_loop_subdivision(p: &mut Parameters<'_, '_>) -> Option<Shape> {
     let mesh = read_triangle_mesh(p)?;
     if !(0..=MAX_SUBDIVISION_LEVELS).contains(&levels) {
         let span = p.span_of("levels");
-        p.diagnostics().error(span, format!("\"levels\" must lie in 0..{MAX_SUBDIVISION_LEVELS}, not {levels}"));
+        p.diagnostics()
+            .error(span, format!("\"levels\" must lie in 0..{MAX_SUBDIVISION_LEVELS}, not {levels}"));
         return None;
     }
     Some(Shape::Triangles(loop_subdivide(&mesh, levels as u32)))
@@ -423,7 +439,11 @@ fn read_ply_mesh(p: &mut Parameters<'_, '_>, meshes: &mut MeshStore) -> Vec<Shap
 /// Triangles and quadrilaterals of a file as separate shapes.
 fn split_loaded_mesh(p: &mut Parameters<'_, '_>, mesh: LoadedMesh) -> Vec<Shape> {
     let LoadedMesh { triangles, quads, positions, normals, uvs, mut face_indices } = mesh;
-    let quad_faces = if face_indices.len() > triangles.len() { face_indices.split_off(triangles.len()) } else { Vec::new() };
+    let quad_faces = if face_indices.len() > triangles.len() {
+        face_indices.split_off(triangles.len())
+    } else {
+        Vec::new()
+    };
     let span = p.span_of("filename");
     let mut shapes = Vec::new();
     if !quads.is_empty() {
@@ -439,7 +459,8 @@ fn split_loaded_mesh(p: &mut Parameters<'_, '_>, mesh: LoadedMesh) -> Vec<Shape>
         }
     }
     if !triangles.is_empty() {
-        let mesh = TriangleMesh { positions, indices: triangles, normals, tangents: Vec::new(), uvs, face_indices };
+        let mesh =
+            TriangleMesh { positions, indices: triangles, normals, tangents: Vec::new(), uvs, face_indices };
         if report_mesh(p, span, mesh.validate()).is_some() {
             shapes.push(Shape::Triangles(mesh));
         }

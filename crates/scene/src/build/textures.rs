@@ -14,7 +14,8 @@ impl Builder<'_, '_> {
             if MISSING_TEXTURES.contains(&entity.entity.type_name.as_str()) {
                 self.warn_of_missing(entity.entity.span, &entity.entity.type_name);
                 let constant = Entity::new("constant").with("value", Value::Floats(vec![0.5]));
-                self.textures.define(&TextureEntity { entity: constant, ..entity.clone() }, &mut self.context);
+                self.textures
+                    .define(&TextureEntity { entity: constant, ..entity.clone() }, &mut self.context);
             } else {
                 self.textures.define(entity, &mut self.context);
             }
@@ -22,7 +23,8 @@ impl Builder<'_, '_> {
     }
 
     fn warn_of_missing(&mut self, span: Option<Span>, name: &str) {
-        let message = format!("the texture \"{name}\" is not available yet; the constant 0.5 stands in for it");
+        let message =
+            format!("the texture \"{name}\" is not available yet; the constant 0.5 stands in for it");
         self.context.diagnostics.warning(span, message);
     }
 }
