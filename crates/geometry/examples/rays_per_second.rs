@@ -1,7 +1,7 @@
-//! Measures building and tracing: `cargo run --release -p etendue-geometry --example rays_per_second [levels]`.
+//! Measures building and tracing: `cargo run --release -p etendue-geometry --example rays_per_second [n]`.
 //!
-//! The mesh is a ball with a bumpy radius, refined by the given number of levels (default 9: 1 M triangles when
-//! two octahedra are nested); rays go from random points of the box around it in random directions.
+//! The mesh is a bumpy ball of n * n triangles (default 1024). Incoherent rays go from random points of the box
+//! around it in random directions; coherent ones form a picture of it. One thread traces.
 
 use std::time::Instant;
 

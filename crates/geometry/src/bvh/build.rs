@@ -14,7 +14,7 @@ use rayon::prelude::*;
 const N_BINS: usize = 32;
 /// More primitives never share a leaf.
 const MAX_LEAF: usize = 8;
-/// Cost of visiting a node, in tests of a block of triangles; measured, flat between 0.4 and 1.
+/// Cost of visiting a node, in tests of a block of triangles; measured speed hardly changes between 0.3 and 1.2.
 const NODE_COST: f32 = 0.6;
 /// Ranges from here on are built in parallel.
 const PARALLEL_BUILD: usize = 1 << 14;

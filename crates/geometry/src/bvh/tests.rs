@@ -216,7 +216,7 @@ fn degenerate_distributions_build() {
     assert!(growing.n_nodes() < 1000);
 }
 
-/// SPEC PAR: the tree does not depend on the number of threads.
+/// Determinism: the tree does not depend on the number of threads.
 #[test]
 fn the_tree_is_the_same_for_any_number_of_threads() {
     let mesh = soup(40_000, 0.02, 9);

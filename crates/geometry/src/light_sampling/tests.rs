@@ -83,6 +83,19 @@ fn directions_have_the_stated_density() {
     }
 }
 
+/// The test above can fail: a density that is off by 5 % is found.
+#[test]
+fn a_wrong_density_is_noticed() {
+    let (geometry, id) = single(Shape::sphere(0.9), Transform::IDENTITY, false);
+    let reference = references()[0];
+    let sample = |rng: &mut Rng| {
+        let (sample, _) = geometry.sample_from(id, 0, &reference, rng.next_point2())?;
+        Some((sample.p - reference.p).normalized())
+    };
+    let pdf = |w: Vector3| 0.95 * geometry.pdf_from(id, 0, &reference, w);
+    assert!(sphere_chi_square(40_000, 1, sample, pdf, SIGNIFICANCE).is_err());
+}
+
 /// The density that comes with a sample is that of the direction, of the point, and its area density after the
 /// change of measure.
 #[test]

@@ -23,7 +23,7 @@ impl Disk {
         Self {
             height,
             radius: radius.abs(),
-            inner_radius: inner_radius.clamp(0.0, radius.abs()),
+            inner_radius: inner_radius.max(0.0).min(radius.abs()),
             phi_max: super::clamp_azimuth(phi_max),
         }
     }

@@ -28,7 +28,7 @@ impl Sphere {
     pub(crate) fn new(radius: f64, z_min: f64, z_max: f64, phi_max: f64) -> Self {
         let radius = radius.abs();
         let (z_min, z_max) =
-            (z_min.min(z_max).clamp(-radius, radius), z_min.max(z_max).clamp(-radius, radius));
+            (z_min.min(z_max).max(-radius).min(radius), z_min.max(z_max).max(-radius).min(radius));
         Self {
             radius,
             z_min,

@@ -312,6 +312,22 @@ fn check_departures(geometry: &Geometry, transform: &Transform, rng: &mut Rng) {
     assert!(n_missed * 50 <= n_returns, "{n_missed} of {n_returns} rays back missed");
 }
 
+/// Quadrics of impossible size are left out instead of failing.
+#[test]
+fn impossible_quadrics_are_left_out() {
+    for radius in [0.0, f32::NAN, f32::INFINITY] {
+        for shape in [
+            Shape::sphere(radius),
+            disk(radius),
+            Shape::Disk { height: f32::NAN, radius: 1.0, inner_radius: radius, phi_max_rad: TAU },
+            Shape::Cylinder { radius, z_min: 0.0, z_max: 1.0, phi_max_rad: TAU },
+        ] {
+            let (geometry, _) = single(shape, Transform::IDENTITY, false);
+            assert!(geometry.bounds().is_empty());
+        }
+    }
+}
+
 /// Areas add up to the closed forms.
 #[test]
 fn areas_are_those_of_the_closed_forms() {
