@@ -92,6 +92,8 @@ pub struct Scene {
     pub sampler: SamplerSettings,
     /// The method that the document asks for, with its parameters.
     pub integrator: Entity,
+    /// True if anything varies over surfaces, so that textures want to know the size of a pixel.
+    pub has_textures: bool,
     /// True if some shape has an alpha texture.
     pub has_alpha: bool,
     /// True if light passes some shapes: by alpha, or because they are interfaces.
@@ -193,9 +195,13 @@ impl Scene {
 
     fn material_context(&self, surface: &Surface) -> MaterialContext {
         let point = &surface.point;
-        let (dpdx, dpdy) =
-            self.camera.dpdx_dpdy(point.p, point.ng, surface.time, self.sampler.samples_per_pixel);
-        let [dudx, dudy, dvdx, dvdy] = uv_differentials(point, dpdx, dpdy);
+        let (dpdx, dpdy) = if self.has_textures {
+            self.camera.dpdx_dpdy(point.p, point.ng, surface.time, self.sampler.samples_per_pixel)
+        } else {
+            (Vector3::default(), Vector3::default())
+        };
+        let [dudx, dudy, dvdx, dvdy] =
+            if self.has_textures { uv_differentials(point, dpdx, dpdy) } else { [0.0; 4] };
         let texture = TextureContext {
             p: point.p,
             dpdx,

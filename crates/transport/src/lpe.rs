@@ -231,14 +231,16 @@ impl PathExpressions {
         self.expressions.is_empty()
     }
 
-    /// Starts to follow a path at the eye.
+    /// A recorder, at the eye.
     #[must_use]
-    pub fn start(&self) -> LayerRecorder<'_> {
-        let mut states = [StateID::ZERO; MAX_EXPRESSIONS];
-        for (state, expression) in states.iter_mut().zip(&self.expressions) {
-            *state = expression.automaton.next_state(expression.start, b'E');
-        }
-        LayerRecorder { expressions: &self.expressions, states, radiance: [Sampled::ZERO; MAX_EXPRESSIONS] }
+    pub fn recorder(&self) -> LayerRecorder<'_> {
+        let mut recorder = LayerRecorder {
+            expressions: &self.expressions,
+            states: [StateID::ZERO; MAX_EXPRESSIONS],
+            radiance: [Sampled::ZERO; MAX_EXPRESSIONS],
+        };
+        recorder.restart();
+        recorder
     }
 }
 
@@ -256,6 +258,14 @@ impl LayerRecorder<'_> {
     #[must_use]
     pub const fn is_idle(&self) -> bool {
         self.expressions.is_empty()
+    }
+
+    /// Forgets the path so far and stands at the eye again.
+    pub fn restart(&mut self) {
+        for (index, expression) in self.expressions.iter().enumerate() {
+            self.states[index] = expression.automaton.next_state(expression.start, b'E');
+            self.radiance[index] = Sampled::ZERO;
+        }
     }
 
     /// The path goes on through an event.
@@ -288,6 +298,13 @@ impl LayerRecorder<'_> {
     #[must_use]
     pub fn radiance(&self) -> &[Sampled] {
         &self.radiance[..self.expressions.len()]
+    }
+
+    /// Multiplies the radiance of each layer, as by the weight of the camera.
+    pub fn scale(&mut self, factor: f32) {
+        for radiance in &mut self.radiance[..self.expressions.len()] {
+            *radiance *= factor;
+        }
     }
 }
 

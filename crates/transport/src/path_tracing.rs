@@ -191,7 +191,7 @@ struct Walk<'s> {
 }
 
 impl<'s> Walk<'s> {
-    fn new(settings: &'s PathSettings, path: &CameraPath<'_>) -> Self {
+    fn new(settings: &'s PathSettings, path: &CameraPath<'_, '_>) -> Self {
         Self {
             settings,
             ray: path.ray,
@@ -204,7 +204,7 @@ impl<'s> Walk<'s> {
         }
     }
 
-    fn follow(mut self, tracer: &Tracer<'_>, path: &mut CameraPath<'_>) -> Sampled {
+    fn follow(mut self, tracer: &Tracer<'_>, path: &mut CameraPath<'_, '_>) -> Sampled {
         let scene = tracer.scene;
         loop {
             let Some(hit) = tracer.intersect(&self.ray) else {
@@ -213,7 +213,7 @@ impl<'s> Walk<'s> {
             };
             let surface = scene.surface(&self.ray, &hit);
             self.add_emission(scene, &surface, path);
-            let Some(mut bsdf) = scene.bsdf(&surface, &mut path.lambda) else {
+            let Some(mut bsdf) = scene.bsdf(&surface, path.lambda) else {
                 // Light passes as if the surface were not there.
                 self.ray = surface.spawn_ray(self.ray.direction);
                 continue;
@@ -221,7 +221,7 @@ impl<'s> Walk<'s> {
             if self.depth == 0
                 && let Some(features) = &mut path.features
             {
-                *features = describe(scene, &surface, &bsdf, &path.lambda);
+                **features = describe(scene, &surface, &bsdf, path.lambda);
             }
             if self.depth == self.settings.max_depth {
                 break;
@@ -237,7 +237,7 @@ impl<'s> Walk<'s> {
             else {
                 break;
             };
-            self.scatter(&surface, &sample, &mut path.layers);
+            self.scatter(&surface, &sample, path.layers);
             if !self.survives_roulette(path) {
                 break;
             }
@@ -260,23 +260,23 @@ impl<'s> Walk<'s> {
         }
     }
 
-    fn add_surroundings(&mut self, scene: &Scene, path: &mut CameraPath<'_>) {
+    fn add_surroundings(&mut self, scene: &Scene, path: &mut CameraPath<'_, '_>) {
         let context = scene.light_context();
         for &id in &scene.infinite_lights {
             let light = scene.light(id);
-            let le = light.le_infinite(&context, self.ray.origin, self.ray.direction, &path.lambda);
+            let le = light.le_infinite(&context, self.ray.origin, self.ray.direction, path.lambda);
             if le.is_black() {
                 continue;
             }
             let wi = self.ray.direction;
             let weight = self.scattering_weight(scene, id, |reference| light.pdf_li(&context, reference, wi));
-            self.add(self.beta * le * weight, &mut path.layers);
+            self.add(self.beta * le * weight, path.layers);
         }
     }
 
-    fn add_emission(&mut self, scene: &Scene, surface: &Surface, path: &mut CameraPath<'_>) {
+    fn add_emission(&mut self, scene: &Scene, surface: &Surface, path: &mut CameraPath<'_, '_>) {
         let Some(id) = surface.light else { return };
-        let le = scene.emitted(surface, &path.lambda);
+        let le = scene.emitted(surface, path.lambda);
         if le.is_black() {
             return;
         }
@@ -285,7 +285,7 @@ impl<'s> Walk<'s> {
         let weight = self.scattering_weight(scene, id, |reference| {
             light.pdf_li_at(&context, reference, self.ray.direction, surface.point.p, surface.point.ng)
         });
-        self.add(self.beta * le * weight, &mut path.layers);
+        self.add(self.beta * le * weight, path.layers);
     }
 
     fn add(&mut self, contribution: Sampled, layers: &mut LayerRecorder<'_>) {
@@ -300,9 +300,9 @@ impl<'s> Walk<'s> {
         tracer: &Tracer<'_>,
         surface: &Surface,
         bsdf: &Bsdf,
-        path: &mut CameraPath<'_>,
+        path: &mut CameraPath<'_, '_>,
     ) {
-        let Some(light) = sample_light(tracer.scene, surface, &mut path.sampler, &path.lambda) else {
+        let Some(light) = sample_light(tracer.scene, surface, path.sampler, path.lambda) else {
             return;
         };
         let pdf_scatter = match self.settings.lights {
@@ -341,7 +341,7 @@ impl<'s> Walk<'s> {
         }
     }
 
-    fn survives_roulette(&mut self, path: &mut CameraPath<'_>) -> bool {
+    fn survives_roulette(&mut self, path: &mut CameraPath<'_, '_>) -> bool {
         if self.depth <= self.settings.roulette_depth {
             return true;
         }

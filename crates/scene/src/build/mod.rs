@@ -79,6 +79,7 @@ impl Scene {
         let has_alpha = attributes.iter().any(|a| a.alpha.is_some());
         let has_passable =
             has_alpha || attributes.iter().any(|a| materials[a.material.0 as usize].is_interface());
+        let has_textures = !document.textures.is_empty();
         let scene = Self {
             geometry,
             attributes,
@@ -93,6 +94,7 @@ impl Scene {
             filter,
             sampler,
             integrator: document.integrator.clone().unwrap_or_else(|| Entity::new("volpath")),
+            has_textures,
             has_alpha,
             has_passable,
         };

@@ -76,7 +76,7 @@ fn recorder_routes_light() {
         .map(|(n, e)| (n.to_owned(), e.to_owned()))
         .to_vec();
     let expressions = PathExpressions::new(&named).expect("good expressions");
-    let mut recorder = expressions.start();
+    let mut recorder = expressions.recorder();
     recorder.emit(Sampled::splat(1.0));
     recorder.emit_through(Event::Diffuse, Sampled::splat(2.0));
     recorder.scatter(Event::Diffuse);

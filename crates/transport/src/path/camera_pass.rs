@@ -4,6 +4,7 @@ use std::cell::Cell;
 
 use etendue_geometry::Hit;
 use etendue_math::{Point2, Ray, Sampler};
+use etendue_scene::camera::CameraRay;
 use etendue_scene::film::{Features, FilmSums, FilmTile, PixelBounds, PixelSample};
 use etendue_scene::{Film, Scene};
 use etendue_spectrum::{Sampled, Wavelengths};
@@ -88,7 +89,7 @@ impl CameraPass<'_> {
         pass: u64,
         film: &mut Film,
         control: &Control<'_>,
-        radiance: impl Fn(&Tracer<'_>, &mut CameraPath<'_>) -> Sampled + Sync,
+        radiance: impl Fn(&Tracer<'_>, &mut CameraPath<'_, '_>) -> Sampled + Sync,
     ) -> PassEnd {
         let tiles = film.tiles(TILE_SIZE);
         let finished: Vec<Option<FilmSums>> = tiles
@@ -119,11 +120,13 @@ impl CameraPass<'_> {
         pass: u64,
         film: &Film,
         bounds: PixelBounds,
-        radiance: &(impl Fn(&Tracer<'_>, &mut CameraPath<'_>) -> Sampled + Sync),
+        radiance: &(impl Fn(&Tracer<'_>, &mut CameraPath<'_, '_>) -> Sampled + Sync),
     ) -> FilmSums {
         let mut tile = film.start_tile(bounds);
+        let mut layers = self.expressions.recorder();
         for pixel in bounds.pixels() {
-            self.add_sample(tracer, pass, pixel, &mut tile, radiance);
+            layers.restart();
+            self.add_sample(tracer, pass, pixel, &mut tile, &mut layers, radiance);
         }
         Film::finish_tile(tile)
     }
@@ -134,58 +137,53 @@ impl CameraPass<'_> {
         pass: u64,
         pixel: [u32; 2],
         tile: &mut FilmTile<'_>,
-        radiance: &impl Fn(&Tracer<'_>, &mut CameraPath<'_>) -> Sampled,
+        layers: &mut LayerRecorder<'_>,
+        radiance: &impl Fn(&Tracer<'_>, &mut CameraPath<'_, '_>) -> Sampled,
     ) {
         let scene = tracer.scene;
         let mut sampler = Sampler::new(&scene.sampler, pixel, pass);
-        let lambda = self.wavelengths.sample(sampler.next_1d());
+        let mut lambda = self.wavelengths.sample(sampler.next_1d());
         let filter = scene.filter.sample(sampler.next_2d());
         let p_film = Point2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5) + filter.offset;
         let u_time = sampler.next_1d();
         let u_lens = sampler.next_2d();
-        let mut state = CameraPath {
-            ray: Ray::new(etendue_math::Point3::ORIGIN, etendue_math::Vector3::new(0.0, 0.0, 1.0)),
-            lambda,
-            sampler,
-            layers: self.expressions.start(),
-            features: tile.wants_features().then(Features::default),
-        };
+        let mut features = tile.wants_features().then(Features::default);
         let mut value = Sampled::ZERO;
-        let mut weight = 1.0;
-        if let Some(camera_ray) = scene.camera.sample_ray(p_film, u_lens, u_time) {
-            state.ray = camera_ray.ray;
-            weight = camera_ray.weight;
-            value = radiance(tracer, &mut state) * weight;
-        }
-        let mut layers = [Sampled::ZERO; crate::lpe::MAX_EXPRESSIONS];
-        let n_layers = state.layers.radiance().len();
-        for (layer, radiance) in layers.iter_mut().zip(state.layers.radiance()) {
-            *layer = *radiance * weight;
+        if let Some(CameraRay { ray, weight }) = scene.camera.sample_ray(p_film, u_lens, u_time) {
+            let mut path = CameraPath {
+                ray,
+                lambda: &mut lambda,
+                sampler: &mut sampler,
+                layers,
+                features: features.as_mut(),
+            };
+            value = radiance(tracer, &mut path) * weight;
+            layers.scale(weight);
         }
         tile.add(
             pixel,
             &PixelSample {
                 radiance: value,
-                lambda: &state.lambda,
+                lambda: &lambda,
                 filter_weight: filter.weight,
-                features: state.features,
-                layers: &layers[..n_layers],
+                features,
+                layers: layers.radiance(),
             },
         );
     }
 }
 
-/// A camera path in the making, with everything random about it.
+/// A camera path that is about to start, with everything random about it.
 #[derive(Debug)]
-pub struct CameraPath<'e> {
+pub struct CameraPath<'p, 'e> {
     /// The ray from the camera.
     pub ray: Ray,
     /// Its wavelengths; dispersion reduces them.
-    pub lambda: Wavelengths,
+    pub lambda: &'p mut Wavelengths,
     /// The numbers of this sample.
-    pub sampler: Sampler,
+    pub sampler: &'p mut Sampler,
     /// Layers by path expression.
-    pub layers: LayerRecorder<'e>,
+    pub layers: &'p mut LayerRecorder<'e>,
     /// Features of the first surface, if the film wants them.
-    pub features: Option<Features>,
+    pub features: Option<&'p mut Features>,
 }
