@@ -10,12 +10,8 @@ use crate::document::Entity;
 use crate::film::FilmSettings;
 use crate::filter::Filter;
 use crate::light::{Light, LightContext, LightId, LightPoint, LightSampler, LightTables};
-use crate::material::{Material, MaterialContext};
+use crate::material::{MaterialContext, MaterialId, Materials};
 use crate::texture::{FloatTexture, TextureContext, Textures};
-
-/// Index of a material.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MaterialId(pub u32);
 
 /// What a scene knows of a shape beyond its geometry.
 #[derive(Clone, Copy, Debug)]
@@ -72,8 +68,8 @@ pub struct Scene {
     pub attributes: Vec<ShapeAttributes>,
     /// Textures, images and tabulated spectra.
     pub textures: Textures,
-    /// Materials by id.
-    pub materials: Vec<Material>,
+    /// Materials and normal maps.
+    pub materials: Materials,
     /// Lights by id.
     pub lights: Vec<Light>,
     /// Arenas behind the ids that lights hold.
@@ -119,13 +115,6 @@ impl Scene {
     #[must_use]
     pub fn light(&self, id: LightId) -> &Light {
         &self.lights[id.0 as usize]
-    }
-
-    /// The material of that id.
-    #[inline]
-    #[must_use]
-    pub fn material(&self, id: MaterialId) -> &Material {
-        &self.materials[id.0 as usize]
     }
 
     /// The nearest surface that the ray meets before `t_max`.
@@ -190,7 +179,7 @@ impl Scene {
     /// Materials that disperse reduce `lambda` to its first wavelength.
     #[must_use]
     pub fn bsdf(&self, surface: &Surface, lambda: &mut Wavelengths) -> Option<Bsdf> {
-        self.material(surface.material).bsdf(&self.textures, &self.material_context(surface), lambda)
+        self.materials.bsdf(surface.material, &self.textures, &self.material_context(surface), lambda)
     }
 
     fn material_context(&self, surface: &Surface) -> MaterialContext {
@@ -249,7 +238,7 @@ impl Scene {
         let blocked = if self.has_passable {
             self.geometry.occluded(ray, t_max, &|hit: &Hit| {
                 let material = self.attributes[hit.geometry.0 as usize].material;
-                !self.material(material).is_interface() && self.is_opaque(ray, hit)
+                !self.materials.is_interface(material) && self.is_opaque(ray, hit)
             })
         } else {
             self.geometry.occluded(ray, t_max, &|_| true)

@@ -19,8 +19,9 @@ use etendue_geometry::{GeometryBuilder, ObjectId};
 use crate::assets::Assets;
 use crate::diagnostics::{Diagnostics, Span, nearest_name};
 use crate::document::{Document, Entity, InstanceEntity};
+use crate::material::{MaterialId, Materials};
 use crate::parameters::{BuildContext, ParameterSpec};
-use crate::scene::{MaterialId, Scene, ShapeAttributes};
+use crate::scene::{Scene, ShapeAttributes};
 use crate::texture::Textures;
 
 pub use film::{FILMS, SAMPLERS};
@@ -33,6 +34,8 @@ struct Builder<'d, 'a> {
     document: &'d Document,
     context: BuildContext<'a>,
     textures: Textures,
+    materials: Materials,
+    /// The material of each entity of the document.
     material_ids: Vec<MaterialId>,
     named_materials: HashMap<String, MaterialId>,
     attributes: Vec<ShapeAttributes>,
@@ -50,6 +53,7 @@ impl Scene {
             document,
             context: BuildContext::new(&assets),
             textures: Textures::default(),
+            materials: Materials::new(),
             material_ids: Vec::new(),
             named_materials: HashMap::new(),
             attributes: Vec::new(),
@@ -57,7 +61,7 @@ impl Scene {
         };
         builder.build_textures();
         builder.warn_of_media();
-        let materials = builder.build_materials();
+        builder.build_materials();
         let object_shapes = document.objects.iter().flat_map(|object| &object.shapes);
         let mut meshes = MeshStore::new(loaded, document.shapes.iter().chain(object_shapes));
         let geometry = builder.build_geometry(&mut meshes);
@@ -71,14 +75,13 @@ impl Scene {
         if lights.lights.is_empty() {
             builder.context.diagnostics.warning(None, "the scene has no lights; the image will be black");
         }
-        let Builder { context, mut textures, attributes, .. } = builder;
+        let Builder { context, mut textures, materials, attributes, .. } = builder;
         textures.spectra = context.spectra;
         if context.diagnostics.has_errors() {
             return (None, context.diagnostics);
         }
         let has_alpha = attributes.iter().any(|a| a.alpha.is_some());
-        let has_passable =
-            has_alpha || attributes.iter().any(|a| materials[a.material.0 as usize].is_interface());
+        let has_passable = has_alpha || attributes.iter().any(|a| materials.is_interface(a.material));
         let has_textures = !document.textures.is_empty();
         let scene = Self {
             geometry,

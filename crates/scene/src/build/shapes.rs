@@ -10,10 +10,12 @@ use etendue_math::{Normal3, Point2, Vector3};
 use crate::assets::LoadedMesh;
 use crate::diagnostics::Span;
 use crate::document::{MaterialReference, ShapeEntity};
+use crate::material::MaterialId;
 use crate::parameters::{ParameterSpec, Parameters};
-use crate::scene::{MaterialId, ShapeAttributes};
+use crate::scene::ShapeAttributes;
 use crate::texture::FloatTexture;
 
+use super::materials::DEFAULT_MATERIAL;
 use super::{Builder, known_names, unknown_name};
 
 /// Shape types with their parameters.
@@ -200,7 +202,7 @@ impl Builder<'_, '_> {
                     name,
                     names.iter().map(String::as_str),
                 );
-                MaterialId(0)
+                DEFAULT_MATERIAL
             }
         }
     }

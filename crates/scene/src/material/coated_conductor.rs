@@ -5,13 +5,13 @@ use etendue_spectrum::Wavelengths;
 use super::coat::Coat;
 use super::metal::{Metal, MetalNames};
 use super::roughness::{Roughness, RoughnessNames};
-use super::{MaterialContext, Perturbation, spec};
+use super::{MaterialContext, Materials, Perturbation, spec};
 use crate::bsdf::{Base, BsdfKind, Conductor};
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::Textures;
 
 /// Parameters of `coatedconductor`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatedConductorMaterial {
     /// Optics of the metal.
     pub metal: Metal,
@@ -64,12 +64,12 @@ impl CoatedConductorMaterial {
         spec::NORMAL_MAP,
     ];
 
-    pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
+    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         Self {
             metal: Metal::build(p, &MetalNames { eta: "conductor.eta", k: "conductor.k" }),
             roughness: Roughness::build(p, &RoughnessNames::BASE),
             coat: Coat::build(p, "interface.eta", &RoughnessNames::COAT),
-            perturbation: Perturbation::build(p),
+            perturbation: Perturbation::build(p, materials),
         }
     }
 

@@ -4,13 +4,13 @@ use etendue_spectrum::{Spectrum, Wavelengths};
 
 use super::coat::Coat;
 use super::roughness::RoughnessNames;
-use super::{MaterialContext, Perturbation, spec};
+use super::{MaterialContext, Materials, Perturbation, spec};
 use crate::bsdf::{Base, BsdfKind, Diffuse};
 use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
 use crate::texture::{SpectrumTexture, Textures};
 
 /// Parameters of `coateddiffuse`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatedDiffuseMaterial {
     /// Albedo of the base, clamped to [0, 1].
     pub reflectance: SpectrumTexture,
@@ -44,11 +44,11 @@ impl CoatedDiffuseMaterial {
         spec::NORMAL_MAP,
     ];
 
-    pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
+    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         Self {
             reflectance: p.spectrum_texture("reflectance", Spectrum::Constant(0.5), SpectrumRole::Albedo),
             coat: Coat::build(p, "eta", &RoughnessNames::PLAIN),
-            perturbation: Perturbation::build(p),
+            perturbation: Perturbation::build(p, materials),
         }
     }
 

@@ -4,13 +4,13 @@ use etendue_spectrum::Wavelengths;
 
 use super::metal::{Metal, MetalNames};
 use super::roughness::{Roughness, RoughnessNames};
-use super::{MaterialContext, Perturbation, spec};
+use super::{MaterialContext, Materials, Perturbation, spec};
 use crate::bsdf::{BsdfKind, Conductor};
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::Textures;
 
 /// Parameters of `conductor`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConductorMaterial {
     /// Optics.
     pub metal: Metal,
@@ -52,11 +52,11 @@ impl ConductorMaterial {
         spec::NORMAL_MAP,
     ];
 
-    pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
+    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         Self {
             metal: Metal::build(p, &MetalNames { eta: "eta", k: "k" }),
             roughness: Roughness::build(p, &RoughnessNames::PLAIN),
-            perturbation: Perturbation::build(p),
+            perturbation: Perturbation::build(p, materials),
         }
     }
 

@@ -4,13 +4,13 @@ use etendue_spectrum::Wavelengths;
 
 use super::index::RefractiveIndex;
 use super::roughness::{Roughness, RoughnessNames};
-use super::{MaterialContext, Perturbation, spec};
+use super::{MaterialContext, Materials, Perturbation, spec};
 use crate::bsdf::{BsdfKind, Dielectric};
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::Textures;
 
 /// Parameters of `dielectric`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DielectricMaterial {
     /// Index inside, where the normal does not point, relative to outside.
     pub eta: RefractiveIndex,
@@ -32,11 +32,11 @@ impl DielectricMaterial {
         spec::NORMAL_MAP,
     ];
 
-    pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
+    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         Self {
             eta: RefractiveIndex::build(p, "eta"),
             roughness: Roughness::build(p, &RoughnessNames::PLAIN),
-            perturbation: Perturbation::build(p),
+            perturbation: Perturbation::build(p, materials),
         }
     }
 

@@ -2,13 +2,13 @@
 
 use etendue_spectrum::{Spectrum, Wavelengths};
 
-use super::{MaterialContext, Perturbation, spec};
+use super::{MaterialContext, Materials, Perturbation, spec};
 use crate::bsdf::{BsdfKind, Diffuse};
 use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
 use crate::texture::{SpectrumTexture, Textures};
 
 /// Parameters of `diffuse`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiffuseMaterial {
     /// Albedo, clamped to [0, 1].
     pub reflectance: SpectrumTexture,
@@ -30,10 +30,10 @@ impl DiffuseMaterial {
         spec::NORMAL_MAP,
     ];
 
-    pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
+    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         Self {
             reflectance: p.spectrum_texture("reflectance", Spectrum::Constant(0.5), SpectrumRole::Albedo),
-            perturbation: Perturbation::build(p),
+            perturbation: Perturbation::build(p, materials),
         }
     }
 

@@ -2,13 +2,13 @@
 
 use etendue_spectrum::{Spectrum, Wavelengths};
 
-use super::{MaterialContext, Perturbation, spec};
+use super::{MaterialContext, Materials, Perturbation, spec};
 use crate::bsdf::{BsdfKind, DiffuseTransmission};
 use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
 use crate::texture::{SpectrumTexture, Textures};
 
 /// Parameters of `diffusetransmission`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiffuseTransmissionMaterial {
     /// Albedo to the side that light came from.
     pub reflectance: SpectrumTexture,
@@ -48,13 +48,13 @@ impl DiffuseTransmissionMaterial {
         spec::NORMAL_MAP,
     ];
 
-    pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
+    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         let default = Spectrum::Constant(0.25);
         Self {
             reflectance: p.spectrum_texture("reflectance", default, SpectrumRole::Albedo),
             transmittance: p.spectrum_texture("transmittance", default, SpectrumRole::Albedo),
             scale: p.float("scale", 1.0),
-            perturbation: Perturbation::build(p),
+            perturbation: Perturbation::build(p, materials),
         }
     }
 

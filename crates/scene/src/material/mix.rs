@@ -7,18 +7,18 @@ use std::collections::HashMap;
 
 use etendue_math::{hash64, unit_f32};
 
-use super::{Material, MaterialContext};
+use super::{MaterialContext, MaterialId};
 use crate::diagnostics::nearest_name;
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::{FloatTexture, Textures};
 
 /// Parameters of `mix`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixMaterial {
-    materials: Box<[Material; 2]>,
-    amount: FloatTexture,
-    /// Makes the choices of different mixtures independent, also if one is part of another.
-    salt: u64,
+    /// The materials at amount 0 and at amount 1.
+    pub materials: [MaterialId; 2],
+    /// Share of the second material, in [0, 1].
+    pub amount: FloatTexture,
 }
 
 impl MixMaterial {
@@ -40,20 +40,7 @@ impl MixMaterial {
         },
     ];
 
-    /// The materials at amount 0 and at amount 1, and the share of the second, in [0, 1].
-    #[must_use]
-    pub fn new(first: Material, second: Material, amount: FloatTexture) -> Self {
-        let salt = hash64(&[first.depth(), second.depth()]);
-        Self { materials: Box::new([first, second]), amount, salt }
-    }
-
-    /// The materials at amount 0 and at amount 1.
-    #[must_use]
-    pub fn materials(&self) -> &[Material; 2] {
-        &self.materials
-    }
-
-    pub(super) fn build(p: &mut Parameters<'_, '_>, named: &HashMap<String, Material>) -> Option<Self> {
+    pub(super) fn build(p: &mut Parameters<'_, '_>, named: &HashMap<String, MaterialId>) -> Option<Self> {
         let amount = p.float_texture("amount", 0.5);
         let names = p.strings("materials").unwrap_or_default();
         let span = p.span_of("materials");
@@ -62,7 +49,7 @@ impl MixMaterial {
             return None;
         };
         let mut find = |name: &String| {
-            let found = named.get(name).cloned();
+            let found = named.get(name).copied();
             if found.is_none() {
                 let near = nearest_name(name, named.keys().map(String::as_str)).map(str::to_owned);
                 let message = format!("no material named \"{name}\" is defined before its use");
@@ -74,32 +61,29 @@ impl MixMaterial {
             found
         };
         let (first, second) = (find(first), find(second));
-        Some(Self::new(first?, second?, amount))
-    }
-
-    /// Number of mixtures inside one another, this one included.
-    pub(super) fn depth(&self) -> u64 {
-        1 + self.materials[0].depth().max(self.materials[1].depth())
+        Some(Self { materials: [first?, second?], amount })
     }
 
     /// The material at a point.
     #[inline]
-    pub(super) fn choose(&self, textures: &Textures, ctx: &MaterialContext) -> &Material {
+    pub(super) fn choose(&self, textures: &Textures, ctx: &MaterialContext) -> MaterialId {
         let amount = textures.eval_float(self.amount, &ctx.texture);
         if amount <= 0.0 {
-            return &self.materials[0];
+            return self.materials[0];
         }
         if amount >= 1.0 {
-            return &self.materials[1];
+            return self.materials[1];
         }
-        &self.materials[usize::from(amount >= self.random(ctx))]
+        self.materials[usize::from(amount >= self.random(ctx))]
     }
 
-    /// A number in [0, 1) that depends on nothing but the arguments.
+    /// A number in [0, 1) that depends on nothing but the arguments. The parts' ids make the choices of different
+    /// mixtures independent, also if one is part of another.
     fn random(&self, ctx: &MaterialContext) -> f32 {
         let pair = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
         let (p, wo) = (ctx.texture.p, ctx.wo);
-        let hash = hash64(&[pair(p.x, p.y), pair(p.z, wo.x), pair(wo.y, wo.z), self.salt]);
+        let parts = u64::from(self.materials[0].0) << 32 | u64::from(self.materials[1].0);
+        let hash = hash64(&[pair(p.x, p.y), pair(p.z, wo.x), pair(wo.y, wo.z), parts]);
         unit_f32((hash >> 32) as u32)
     }
 }

@@ -1,7 +1,11 @@
 //! Materials: what a surface is made of, before a point on it is known.
 //!
-//! A material holds textures; [`Material::bsdf`] evaluates them at a point, perturbs the shading frame and returns a
-//! [`Bsdf`]. Names, parameters and defaults are those of pbrt-v4.
+//! A material holds textures; [`Materials::bsdf`] evaluates them at a point, perturbs the shading frame and returns a
+//! [`Bsdf`]. Names, parameters and defaults are those of pbrt-v4. A material is plain data: its textures, its normal map
+//! and the parts of a mixture are ids.
+
+mod context;
+mod materials;
 
 mod bump;
 mod coat;
@@ -26,21 +30,21 @@ mod tests;
 
 use std::collections::HashMap;
 
-use etendue_geometry::SurfacePoint;
-use etendue_math::{Normal3, Vector3};
 use etendue_spectrum::{Spectrum, Wavelengths};
 
 pub use coat::Coat;
 pub use coated_conductor::CoatedConductorMaterial;
 pub use coated_diffuse::CoatedDiffuseMaterial;
 pub use conductor::ConductorMaterial;
+pub use context::MaterialContext;
 pub use dielectric::DielectricMaterial;
 pub use diffuse::DiffuseMaterial;
 pub use diffuse_transmission::DiffuseTransmissionMaterial;
 pub use index::RefractiveIndex;
+pub use materials::{MaterialId, Materials};
 pub use metal::Metal;
 pub use mix::MixMaterial;
-pub use normal_map::NormalMap;
+pub use normal_map::{NormalMap, NormalMapId};
 pub use perturbation::Perturbation;
 pub use roughness::{Roughness, RoughnessScale};
 pub use thin_dielectric::ThinDielectricMaterial;
@@ -48,13 +52,13 @@ pub use thin_dielectric::ThinDielectricMaterial;
 use crate::bsdf::Bsdf;
 use crate::diagnostics::nearest_name;
 use crate::parameters::{ParameterSpec, Parameters};
-use crate::texture::{SpectrumTexture, TextureContext, Textures};
+use crate::texture::{SpectrumTexture, Textures};
 
 /// The kinds of material.
 ///
 /// To add one: write a file with a plain struct, `PARAMETERS`, `build` and `bsdf` as in `diffuse.rs`, add a variant here,
 /// follow the compiler through the matches below, and add it to [`MATERIALS`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Material {
     /// Matte.
     Diffuse(DiffuseMaterial),
@@ -136,53 +140,6 @@ pub const MATERIALS: &[MaterialSpec] = &[
     },
 ];
 
-/// The point at which a material is evaluated.
-#[derive(Clone, Copy, Debug)]
-pub struct MaterialContext {
-    /// Where textures are evaluated.
-    pub texture: TextureContext,
-    /// Unit vector towards the viewer.
-    pub wo: Vector3,
-    /// Geometric unit normal.
-    pub ng: Normal3,
-    /// Shading unit normal.
-    pub ns: Normal3,
-    /// First shading tangent.
-    pub shading_dpdu: Vector3,
-    /// Second shading tangent.
-    pub shading_dpdv: Vector3,
-    /// Change of the shading normal with u.
-    pub dndu: Vector3,
-    /// Change of the shading normal with v.
-    pub dndv: Vector3,
-}
-
-impl MaterialContext {
-    /// From a point of a surface.
-    #[inline]
-    #[must_use]
-    pub fn new(texture: TextureContext, surface: &SurfacePoint, wo: Vector3) -> Self {
-        Self {
-            texture,
-            wo,
-            ng: surface.ng,
-            ns: surface.ns,
-            shading_dpdu: surface.shading_dpdu,
-            shading_dpdv: surface.shading_dpdv,
-            dndu: surface.dndu,
-            dndv: surface.dndv,
-        }
-    }
-
-    /// With other shading tangents; their cross product becomes the normal, on the side of the geometric normal.
-    /// Tangents that span no plane change nothing.
-    fn with_tangents(&self, dpdu: Vector3, dpdv: Vector3) -> Self {
-        let Some(ns) = dpdu.cross(dpdv).try_normalized() else { return *self };
-        let ns = ns.as_normal().facing(self.ng.as_vector());
-        Self { ns, shading_dpdu: dpdu, shading_dpdv: dpdv, ..*self }
-    }
-}
-
 impl Default for Material {
     /// The material of shapes that name none: grey and diffuse.
     fn default() -> Self {
@@ -194,54 +151,34 @@ impl Default for Material {
 }
 
 impl Material {
-    /// Builds the material that an entity describes, where `named` are those with a name defined before. Problems are
-    /// reported; `None` means that there is no material because of them.
-    pub fn build(mut p: Parameters<'_, '_>, named: &HashMap<String, Self>) -> Option<Self> {
-        let q = &mut p;
-        let material = match q.entity().type_name.as_str() {
-            "diffuse" => Self::Diffuse(DiffuseMaterial::build(q)),
-            "coateddiffuse" => Self::CoatedDiffuse(CoatedDiffuseMaterial::build(q)),
-            "conductor" => Self::Conductor(ConductorMaterial::build(q)),
-            "coatedconductor" => Self::CoatedConductor(CoatedConductorMaterial::build(q)),
-            "dielectric" => Self::Dielectric(DielectricMaterial::build(q)),
-            "thindielectric" => Self::ThinDielectric(ThinDielectricMaterial::build(q)),
-            "diffusetransmission" => Self::DiffuseTransmission(DiffuseTransmissionMaterial::build(q)),
-            "mix" => Self::Mix(MixMaterial::build(q, named)?),
+    fn build(
+        p: &mut Parameters<'_, '_>,
+        materials: &mut Materials,
+        named: &HashMap<String, MaterialId>,
+    ) -> Option<Self> {
+        Some(match p.entity().type_name.as_str() {
+            "diffuse" => Self::Diffuse(DiffuseMaterial::build(p, materials)),
+            "coateddiffuse" => Self::CoatedDiffuse(CoatedDiffuseMaterial::build(p, materials)),
+            "conductor" => Self::Conductor(ConductorMaterial::build(p, materials)),
+            "coatedconductor" => Self::CoatedConductor(CoatedConductorMaterial::build(p, materials)),
+            "dielectric" => Self::Dielectric(DielectricMaterial::build(p, materials)),
+            "thindielectric" => Self::ThinDielectric(ThinDielectricMaterial::build(p, materials)),
+            "diffusetransmission" => {
+                Self::DiffuseTransmission(DiffuseTransmissionMaterial::build(p, materials))
+            }
+            "mix" => Self::Mix(MixMaterial::build(p, named)?),
             "interface" | "none" | "" => Self::Interface,
             other => {
-                report_unknown(q, other);
+                report_unknown(p, other);
                 return None;
             }
-        };
-        p.finish();
-        Some(material)
+        })
     }
 
-    /// True if the surface does not exist for light anywhere.
+    /// How the material, which is no mixture, scatters light at a point whose shading frame is perturbed already.
     #[inline]
-    #[must_use]
-    pub const fn is_interface(&self) -> bool {
-        matches!(self, Self::Interface)
-    }
-
-    /// This material, or the part of a mixture that is at the point.
-    #[inline]
-    #[must_use]
-    pub fn resolve(&self, textures: &Textures, ctx: &MaterialContext) -> &Self {
-        let mut material = self;
-        while let Self::Mix(mix) = material {
-            material = mix.choose(textures, ctx);
-        }
-        material
-    }
-
-    /// How the material scatters light at a point; `None` where light passes as if there were no surface. Wavelengths
-    /// but the first are given up where refraction depends on them.
-    #[must_use]
-    pub fn bsdf(&self, textures: &Textures, ctx: &MaterialContext, lambda: &mut Wavelengths) -> Option<Bsdf> {
-        let material = self.resolve(textures, ctx);
-        let ctx = &material.perturbation()?.apply(textures, ctx);
-        let kind = match material {
+    fn bsdf(&self, textures: &Textures, ctx: &MaterialContext, lambda: &mut Wavelengths) -> Option<Bsdf> {
+        let kind = match self {
             Self::Diffuse(material) => material.bsdf(textures, ctx, lambda),
             Self::CoatedDiffuse(material) => material.bsdf(textures, ctx, lambda),
             Self::Conductor(material) => material.bsdf(textures, ctx, lambda),
@@ -267,11 +204,6 @@ impl Material {
             Self::DiffuseTransmission(material) => Some(&material.perturbation),
             Self::Mix(_) | Self::Interface => None,
         }
-    }
-
-    /// Number of mixtures inside one another.
-    fn depth(&self) -> u64 {
-        if let Self::Mix(mix) = self { mix.depth() } else { 0 }
     }
 }
 

@@ -9,23 +9,27 @@ use etendue_math::{Frame, Point2, Vector3};
 
 use super::MaterialContext;
 
-/// An image of tangent-space normals, shared by whoever uses the file.
+/// Index of a normal map in [`Materials`](super::Materials).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct NormalMapId(pub u32);
+
+/// An image of tangent-space normals.
 #[derive(Clone, Debug)]
 pub struct NormalMap {
     texels: Arc<Texels>,
 }
 
-impl PartialEq for NormalMap {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.texels, &other.texels)
-    }
-}
-
 impl NormalMap {
-    /// From an image of at least three channels; `None` if it has fewer.
+    /// From an image of at least three channels; `None` if it has fewer or no pixels.
     #[must_use]
     pub fn new(texels: Arc<Texels>) -> Option<Self> {
-        (texels.n_channels() >= 3).then_some(Self { texels })
+        let is_usable = texels.n_channels() >= 3 && texels.width() > 0 && texels.height() > 0;
+        is_usable.then_some(Self { texels })
+    }
+
+    /// True if both are the same image in memory.
+    pub(super) fn shares_image_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.texels, &other.texels)
     }
 
     /// The unit normal in the tangent frame, interpolated between texels.

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use super::MaterialContext;
 use super::bump::bump;
-use super::normal_map::NormalMap;
+use super::normal_map::{NormalMap, NormalMapId};
+use super::{MaterialContext, Materials};
 use crate::parameters::Parameters;
 use crate::texture::{FloatTexture, Textures};
 
 /// What perturbs the shading normal.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Perturbation {
     /// Nothing.
     #[default]
@@ -17,11 +17,11 @@ pub enum Perturbation {
     /// The slope of a height field, in metres along the normal.
     Bump(FloatTexture),
     /// An image of normals.
-    NormalMap(NormalMap),
+    NormalMap(NormalMapId),
 }
 
 impl Perturbation {
-    pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
+    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         let height = p.float_texture_opt("displacement");
         let Some(file) = p.string_opt("normalmap") else { return height.map_or(Self::None, Self::Bump) };
         if height.is_some() {
@@ -30,21 +30,26 @@ impl Perturbation {
         }
         // An image that could not be read has been reported by its reader.
         let Some(texels) = p.context.assets.images.get(&file) else { return Self::None };
-        let map = NormalMap::new(Arc::clone(texels));
-        if map.is_none() {
+        let Some(map) = NormalMap::new(Arc::clone(texels)) else {
             let span = p.span_of("normalmap");
             p.diagnostics().error(span, format!("the normal map \"{file}\" needs three channels"));
-        }
-        map.map_or(Self::None, Self::NormalMap)
+            return Self::None;
+        };
+        Self::NormalMap(materials.add_normal_map(map))
     }
 
-    /// The context with the perturbed shading frame.
+    /// The context with the perturbed shading frame; `None` if nothing perturbs it.
     #[inline]
-    pub(super) fn apply(&self, textures: &Textures, ctx: &MaterialContext) -> MaterialContext {
-        match self {
-            Self::None => *ctx,
-            Self::Bump(height) => bump(*height, textures, ctx),
-            Self::NormalMap(map) => map.perturb(ctx),
+    pub(super) fn apply(
+        &self,
+        materials: &Materials,
+        textures: &Textures,
+        ctx: &MaterialContext,
+    ) -> Option<MaterialContext> {
+        match *self {
+            Self::None => None,
+            Self::Bump(height) => Some(bump(height, textures, ctx)),
+            Self::NormalMap(id) => Some(materials.normal_map(id).perturb(ctx)),
         }
     }
 }

@@ -14,29 +14,30 @@ use crate::bsdf::{Base, BsdfKind, Lobes, TransportMode};
 use crate::diagnostics::Diagnostics;
 use crate::document::{Entity, Value};
 use crate::parameters::BuildContext;
-use crate::texture::{Bilerp, FloatTexture, FloatTextureNode, Mapping2};
+use crate::texture::{Bilerp, FloatTexture, FloatTextureNode, Mapping2, TextureContext};
 
 /// What a build needs and makes.
 #[derive(Default)]
 struct Fixture {
     assets: Assets,
     textures: Textures,
-    named: HashMap<String, Material>,
+    materials: Materials,
+    named: HashMap<String, MaterialId>,
     float_textures: HashMap<String, FloatTexture>,
 }
 
 impl Fixture {
-    fn build(&mut self, entity: &Entity) -> (Option<Material>, Diagnostics) {
+    fn build(&mut self, entity: &Entity) -> (Option<MaterialId>, Diagnostics) {
         let mut context = BuildContext::new(&self.assets);
         context.spectra = self.textures.spectra.clone();
         context.float_textures = self.float_textures.clone();
-        let material = Material::build(Parameters::new(entity, &mut context), &self.named);
+        let material = self.materials.build(Parameters::new(entity, &mut context), &self.named);
         self.textures.spectra = context.spectra;
         (material, context.diagnostics)
     }
 
     #[track_caller]
-    fn build_clean(&mut self, entity: &Entity) -> Material {
+    fn build_clean(&mut self, entity: &Entity) -> MaterialId {
         let (material, diagnostics) = self.build(entity);
         assert!(diagnostics.list().is_empty(), "{:?}", diagnostics.list());
         material.expect("no problem was reported")
@@ -46,7 +47,17 @@ impl Fixture {
     fn kind(&mut self, entity: &Entity) -> BsdfKind {
         let material = self.build_clean(entity);
         let mut lambda = Wavelengths::sample_visible(0.3);
-        *material.bsdf(&self.textures, &context(), &mut lambda).expect("a material that scatters").kind()
+        *self.bsdf(material, &context(), &mut lambda).expect("a material that scatters").kind()
+    }
+
+    fn bsdf(&self, material: MaterialId, ctx: &MaterialContext, lambda: &mut Wavelengths) -> Option<Bsdf> {
+        self.materials.bsdf(material, &self.textures, ctx, lambda)
+    }
+
+    /// Gives a name to the default material.
+    fn name_default(&mut self, name: &str) {
+        let id = self.materials.add(Material::default());
+        self.named.insert(name.to_owned(), id);
     }
 
     /// A height that grows by `slope` per unit of u.
@@ -79,6 +90,10 @@ fn context() -> MaterialContext {
 
 fn floats(value: f32) -> Value {
     Value::Floats(vec![value])
+}
+
+fn strings(value: &str) -> Value {
+    Value::Strings(vec![value.to_owned()])
 }
 
 fn named_spectrum(name: &str) -> Value {
@@ -122,9 +137,10 @@ fn defaults() {
 
     let interface = fixture.build_clean(&plain("interface"));
     let mut lambda = Wavelengths::sample_visible(0.3);
-    assert!(interface.is_interface());
-    assert!(interface.bsdf(&fixture.textures, &context(), &mut lambda).is_none());
-    assert_eq!(fixture.build_clean(&plain("diffuse")), Material::default());
+    assert!(fixture.materials.is_interface(interface));
+    assert!(fixture.bsdf(interface, &context(), &mut lambda).is_none());
+    let diffuse = fixture.build_clean(&plain("diffuse"));
+    assert_eq!(*fixture.materials.get(diffuse), Material::default());
 }
 
 /// Every parameter in the documentation is one that the builder knows, and no other is.
@@ -132,7 +148,7 @@ fn defaults() {
 fn documented_parameters_are_the_known_ones() {
     for spec in MATERIALS {
         let mut fixture = Fixture::default();
-        fixture.named.insert("a".to_owned(), Material::default());
+        fixture.name_default("a");
         let mut entity = plain(spec.name);
         for parameter in spec.parameters {
             let value = match parameter.kind {
@@ -199,7 +215,7 @@ fn dispersion_gives_up_wavelengths() {
     for u in [0.02, 0.5, 0.98] {
         let mut lambda = Wavelengths::sample_visible(u);
         let hero = lambda.lambda_nm()[0];
-        let bsdf = prism.bsdf(&fixture.textures, &context(), &mut lambda).unwrap();
+        let bsdf = fixture.bsdf(prism, &context(), &mut lambda).unwrap();
         assert!(lambda.secondary_terminated());
         let BsdfKind::Dielectric(glass) = bsdf.kind() else { panic!("not glass") };
         assert!((glass.eta - crown(hero)).abs() < 2e-3, "{} at {hero}", glass.eta);
@@ -213,7 +229,7 @@ fn dispersion_gives_up_wavelengths() {
 
     let plain_glass = fixture.build_clean(&plain("dielectric").with("eta", floats(1.7)));
     let mut lambda = Wavelengths::sample_visible(0.5);
-    let _ = plain_glass.bsdf(&fixture.textures, &context(), &mut lambda);
+    let _ = fixture.bsdf(plain_glass, &context(), &mut lambda);
     assert!(!lambda.secondary_terminated());
 }
 
@@ -242,19 +258,19 @@ fn albedos_are_clamped() {
 #[test]
 fn mixtures_have_their_share() {
     let mut fixture = Fixture::default();
-    fixture.named.insert("matte".to_owned(), Material::default());
+    fixture.name_default("matte");
     let glass = fixture.build_clean(&plain("dielectric"));
     fixture.named.insert("glass".to_owned(), glass);
     let names = Value::Strings(vec!["matte".to_owned(), "glass".to_owned()]);
-    let share = |fixture: &mut Fixture, material: &Material| {
+    let share = |fixture: &Fixture, material: MaterialId| {
         let mut rng = Rng::new(7, 0);
         let n = 20_000;
         let count = (0..n)
             .filter(|_| {
                 let mut ctx = context();
                 ctx.texture.p.x = rng.next_f32();
-                let chosen = material.resolve(&fixture.textures, &ctx);
-                assert_eq!(chosen, material.resolve(&fixture.textures, &ctx));
+                let chosen = fixture.materials.resolve(material, &fixture.textures, &ctx);
+                assert_eq!(chosen, fixture.materials.resolve(material, &fixture.textures, &ctx));
                 matches!(chosen, Material::Dielectric(_))
             })
             .count();
@@ -265,7 +281,7 @@ fn mixtures_have_their_share() {
     for amount in [0.0, 0.2, 0.5, 1.0] {
         let entity = plain("mix").with("materials", names.clone()).with("amount", floats(amount));
         let mix = fixture.build_clean(&entity);
-        let found = share(&mut fixture, &mix);
+        let found = share(&fixture, mix);
         assert!(
             (found - amount).abs() <= tolerance * f32::from(amount > 0.0 && amount < 1.0),
             "{found} {amount}"
@@ -276,7 +292,7 @@ fn mixtures_have_their_share() {
     fixture.named.insert("half".to_owned(), half);
     let nested = Value::Strings(vec!["matte".to_owned(), "half".to_owned()]);
     let nested = fixture.build_clean(&plain("mix").with("materials", nested));
-    let found = share(&mut fixture, &nested);
+    let found = share(&fixture, nested);
     assert!((found - 0.25).abs() < tolerance, "{found}");
 }
 
@@ -288,7 +304,7 @@ fn unknown_names_are_reported() {
     let (material, diagnostics) = fixture.build(&plain("difuse"));
     assert!(material.is_none() && diagnostics.has_errors() && help(&diagnostics).contains("\"diffuse\""));
 
-    fixture.named.insert("chrome".to_owned(), Material::default());
+    fixture.name_default("chrome");
     let names = Value::Strings(vec!["chrome".to_owned(), "crome".to_owned()]);
     let (material, diagnostics) = fixture.build(&plain("mix").with("materials", names));
     assert!(material.is_none() && diagnostics.has_errors() && help(&diagnostics).contains("\"chrome\""));
@@ -306,7 +322,7 @@ fn bumps_tilt_the_normal() {
     let entity = plain("diffuse").with("displacement", Value::Texture("ramp".to_owned()));
     let material = fixture.build_clean(&entity);
     let mut lambda = Wavelengths::sample_visible(0.5);
-    let bsdf = material.bsdf(&fixture.textures, &context(), &mut lambda).unwrap();
+    let bsdf = fixture.bsdf(material, &context(), &mut lambda).unwrap();
     // 0.5 m per unit of u, which is 2 m long.
     let expected = Vector3::new(-0.25, 0.0, 1.0).normalized();
     assert!((bsdf.ns().as_vector() - expected).length() < 1e-3, "{:?}", bsdf.ns());
@@ -314,13 +330,12 @@ fn bumps_tilt_the_normal() {
     // The same with the step of a pixel.
     let mut ctx = context();
     ctx.texture.dudx = 0.02;
-    let bsdf = material.bsdf(&fixture.textures, &ctx, &mut lambda).unwrap();
+    let bsdf = fixture.bsdf(material, &ctx, &mut lambda).unwrap();
     assert!((bsdf.ns().as_vector() - expected).length() < 1e-3, "{:?}", bsdf.ns());
     // Seen from a flipped surface the normal stays on the side of the geometric one.
     let down = Normal3::new(0.0, 0.0, -1.0);
-    let bsdf = material
-        .bsdf(&fixture.textures, &MaterialContext { ng: down, ns: down, ..ctx }, &mut lambda)
-        .unwrap();
+    let flipped = MaterialContext { ng: down, ns: down, ..ctx };
+    let bsdf = fixture.bsdf(material, &flipped, &mut lambda).unwrap();
     assert!(bsdf.ns().z < 0.0);
 }
 
@@ -332,7 +347,7 @@ fn a_constant_height_keeps_the_normal() {
     let ctx =
         MaterialContext { dndu: Vector3::new(1.0, 0.0, 0.0), dndv: Vector3::new(0.0, 0.5, 0.0), ..context() };
     let mut lambda = Wavelengths::sample_visible(0.5);
-    let bsdf = material.bsdf(&fixture.textures, &ctx, &mut lambda).unwrap();
+    let bsdf = fixture.bsdf(material, &ctx, &mut lambda).unwrap();
     assert!((bsdf.ns().as_vector() - Vector3::new(0.0, 0.0, 1.0)).length() < 1e-6);
 }
 
@@ -345,19 +360,23 @@ fn normal_maps_turn_the_normal() {
     let texels = Texels::from_fn(4, 4, 3, |_, y, c| encode(if y < 2 { tilted } else { flat })[c]);
     let mut fixture = Fixture::default();
     fixture.assets.images.insert("n.png".to_owned(), Arc::new(texels));
-    let entity = plain("diffuse").with("normalmap", Value::Strings(vec!["n.png".to_owned()]));
+    let entity = plain("diffuse").with("normalmap", strings("n.png"));
     let material = fixture.build_clean(&entity);
     let mut lambda = Wavelengths::sample_visible(0.5);
     let mut normal_at = |v: f32| {
         let mut ctx = context();
         ctx.texture.uv = Point2::new(0.3, v);
-        material.bsdf(&fixture.textures, &ctx, &mut lambda).unwrap().ns().as_vector()
+        fixture.bsdf(material, &ctx, &mut lambda).unwrap().ns().as_vector()
     };
     assert!((normal_at(0.75) - tilted).length() < 1e-5);
     assert!((normal_at(0.25) - flat).length() < 1e-5);
     // It repeats, and between rows it interpolates.
     assert!((normal_at(-0.25) - tilted).length() < 1e-5);
     assert!((normal_at(0.5) - (tilted + flat).normalized()).length() < 1e-4);
+    // An image is held once, however many materials use it.
+    let other = fixture.build_clean(&plain("conductor").with("normalmap", strings("n.png")));
+    let perturbation = |id| fixture.materials.get(id).perturbation().copied();
+    assert_eq!(perturbation(material), perturbation(other));
     // A grey image is no normal map.
     fixture.assets.images.insert("n.png".to_owned(), Arc::new(Texels::from_fn(1, 1, 1, |_, _, _| 0.5)));
     assert!(fixture.build(&entity).1.has_errors());
@@ -371,7 +390,7 @@ fn grooves_follow_the_tangent() {
     let material = fixture.build_clean(&entity);
     let ctx = MaterialContext { shading_dpdu: Vector3::new(0.0, 5.0, 0.0), ..context() };
     let mut lambda = Wavelengths::sample_visible(0.5);
-    let bsdf = material.bsdf(&fixture.textures, &ctx, &mut lambda).unwrap();
+    let bsdf = fixture.bsdf(material, &ctx, &mut lambda).unwrap();
     assert!((bsdf.frame().x - Vector3::new(0.0, 1.0, 0.0)).length() < 1e-6);
     let wo = Vector3::new(0.0, 0.0, 1.0);
     let at = |x: f32, y: f32| {
@@ -387,4 +406,22 @@ fn a_missing_index_is_one() {
     let index = RefractiveIndex(Spectrum::Constant(0.0));
     let mut lambda = Wavelengths::sample_visible(0.5);
     assert_eq!(index.of_hero(&fixture.textures, &mut lambda), 1.0);
+}
+
+/// Materials are copied to other memories, so they hold nothing but numbers and ids, and not too many.
+#[test]
+fn materials_are_plain_data() {
+    fn is_copy<T: Copy>() {}
+    is_copy::<Material>();
+    assert!(size_of::<Material>() <= 256, "{}", size_of::<Material>());
+}
+
+/// A mixture that named itself or a later material could lead around in a circle.
+#[test]
+#[should_panic(expected = "a mixture names a material that is not there")]
+fn mixtures_name_materials_before_them() {
+    let mut materials = Materials::new();
+    let first = materials.add(Material::default());
+    let amount = FloatTexture::Constant(0.5);
+    materials.add(Material::Mix(MixMaterial { materials: [first, MaterialId(1)], amount }));
 }

@@ -3,13 +3,13 @@
 use etendue_spectrum::Wavelengths;
 
 use super::index::RefractiveIndex;
-use super::{Perturbation, spec};
+use super::{Materials, Perturbation, spec};
 use crate::bsdf::{BsdfKind, ThinDielectric};
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::Textures;
 
 /// Parameters of `thindielectric`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThinDielectricMaterial {
     /// Index of the pane relative to its surroundings.
     pub eta: RefractiveIndex,
@@ -21,8 +21,8 @@ impl ThinDielectricMaterial {
     /// What scene files may say.
     pub const PARAMETERS: &'static [ParameterSpec] = &[spec::ETA, spec::DISPLACEMENT, spec::NORMAL_MAP];
 
-    pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
-        Self { eta: RefractiveIndex::build(p, "eta"), perturbation: Perturbation::build(p) }
+    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
+        Self { eta: RefractiveIndex::build(p, "eta"), perturbation: Perturbation::build(p, materials) }
     }
 
     #[inline]

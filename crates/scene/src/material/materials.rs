@@ -1,0 +1,125 @@
+//! The arena of materials: shapes and mixtures hold ids of materials, materials hold ids of normal maps.
+
+use std::collections::HashMap;
+
+use etendue_spectrum::Wavelengths;
+
+use super::{Material, MaterialContext, NormalMap, NormalMapId};
+use crate::bsdf::Bsdf;
+use crate::parameters::Parameters;
+use crate::texture::Textures;
+
+/// Index of a material in [`Materials`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MaterialId(pub u32);
+
+/// All materials of a scene, with the normal maps they use.
+#[derive(Clone, Debug, Default)]
+pub struct Materials {
+    materials: Vec<Material>,
+    normal_maps: Vec<NormalMap>,
+}
+
+impl Materials {
+    /// No materials.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a material. A mixture may only name materials that were added before it, so that there are no circles.
+    pub fn add(&mut self, material: Material) -> MaterialId {
+        let id = MaterialId(self.materials.len() as u32);
+        if let Material::Mix(mix) = &material {
+            assert!(
+                mix.materials.iter().all(|part| *part < id),
+                "a mixture names a material that is not there"
+            );
+        }
+        self.materials.push(material);
+        id
+    }
+
+    /// Adds the material that an entity describes, where `named` are those with a name so far. Problems are reported;
+    /// `None` means that there is no material because of them.
+    pub fn build(
+        &mut self,
+        mut p: Parameters<'_, '_>,
+        named: &HashMap<String, MaterialId>,
+    ) -> Option<MaterialId> {
+        let material = Material::build(&mut p, self, named)?;
+        p.finish();
+        Some(self.add(material))
+    }
+
+    /// Adds a normal map. An image that is there already is not added again.
+    pub fn add_normal_map(&mut self, map: NormalMap) -> NormalMapId {
+        let found = self.normal_maps.iter().position(|known| known.shares_image_with(&map));
+        let index = found.unwrap_or_else(|| {
+            self.normal_maps.push(map);
+            self.normal_maps.len() - 1
+        });
+        NormalMapId(index as u32)
+    }
+
+    /// Number of materials.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.materials.len()
+    }
+
+    /// True if there are no materials.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.materials.is_empty()
+    }
+
+    /// The material of that id.
+    #[inline]
+    #[must_use]
+    pub fn get(&self, id: MaterialId) -> &Material {
+        &self.materials[id.0 as usize]
+    }
+
+    /// The normal map of that id.
+    #[inline]
+    #[must_use]
+    pub fn normal_map(&self, id: NormalMapId) -> &NormalMap {
+        &self.normal_maps[id.0 as usize]
+    }
+
+    /// True if the surface does not exist for light anywhere. A mixture does not count, even one of interfaces: paths
+    /// pass where the interface was chosen, but shadow rays stop, as in pbrt-v4.
+    #[inline]
+    #[must_use]
+    pub fn is_interface(&self, id: MaterialId) -> bool {
+        matches!(self.get(id), Material::Interface)
+    }
+
+    /// That material, or the part of the mixture that is at the point.
+    #[inline]
+    #[must_use]
+    pub fn resolve(&self, id: MaterialId, textures: &Textures, ctx: &MaterialContext) -> &Material {
+        let mut material = self.get(id);
+        // Ends, since a mixture names materials before it.
+        while let Material::Mix(mix) = material {
+            material = self.get(mix.choose(textures, ctx));
+        }
+        material
+    }
+
+    /// How the material scatters light at a point; `None` where light passes as if there were no surface. Wavelengths
+    /// but the first are given up where refraction depends on them.
+    #[must_use]
+    pub fn bsdf(
+        &self,
+        id: MaterialId,
+        textures: &Textures,
+        ctx: &MaterialContext,
+        lambda: &mut Wavelengths,
+    ) -> Option<Bsdf> {
+        let material = self.resolve(id, textures, ctx);
+        let perturbed = material.perturbation()?.apply(self, textures, ctx);
+        material.bsdf(textures, perturbed.as_ref().unwrap_or(ctx), lambda)
+    }
+}
