@@ -164,6 +164,9 @@ pub(crate) struct CompareArguments {
     /// Clamp both images to this largest value first
     #[arg(long, value_name = "MAX")]
     pub(crate) clamp: Option<f32>,
+    /// Average blocks of the larger image where it is a whole multiple of the smaller
+    #[arg(long)]
+    pub(crate) box_filter: bool,
     /// Multiply the reference by this first
     #[arg(long, value_name = "FACTOR", default_value = "1")]
     pub(crate) scale_reference: f32,

@@ -48,8 +48,12 @@ pub(crate) struct CheckpointPlan {
 }
 
 impl CheckpointPlan {
-    /// Writes the state; a failure is said, and the render goes on.
+    /// Writes the state; a failure is said, and the render goes on. Before the first pass is complete there is nothing
+    /// to keep: the film may hold some of its tiles, which a resumed render would add again.
     pub(crate) fn write(&self, film: &Film, state: Vec<u8>) {
+        if film.n_passes() == 0 {
+            return;
+        }
         let checkpoint = Checkpoint {
             fingerprint: self.fingerprint,
             seed: self.seed,

@@ -171,7 +171,7 @@ fn write_outputs(arguments: &RenderArguments, job: &Job) -> Result<()> {
     let mut image = job.film.develop();
     let name = arguments.scene.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     image.metadata = metadata::describe(&job.scene, &job.film, job.fingerprint, &name);
-    if arguments.passes.is_some() {
+    if arguments.passes.is_some() && job.film.n_passes() > 0 {
         image.channels.extend(job.film.sums().exact_channels());
     }
     write_all(&job.outputs, &image)
