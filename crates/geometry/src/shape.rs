@@ -10,7 +10,6 @@ pub(crate) mod entity;
 mod patches;
 mod plane;
 mod quadric;
-mod solid_angle;
 mod sphere;
 mod triangles;
 

@@ -33,8 +33,8 @@ pub use sphere::{
 };
 pub use square::{bilinear_pdf, invert_bilinear, sample_bilinear};
 pub use triangle::{
-    invert_spherical_triangle, invert_uniform_triangle, sample_spherical_triangle, sample_uniform_triangle,
-    spherical_triangle_solid_angle, uniform_triangle_pdf,
+    SphericalTriangle, invert_spherical_triangle, invert_uniform_triangle, sample_spherical_triangle,
+    sample_uniform_triangle, spherical_triangle_solid_angle, uniform_triangle_pdf,
 };
 
 #[cfg(test)]

@@ -5,10 +5,10 @@
 //! solved in double precision. Patches that are rectangles are sampled uniformly in solid angle, others by a
 //! density that is bilinear in the areas at the corners.
 
+use etendue_math::warp::SphericalRectangle;
 use etendue_math::{Bounds3, Frame, Normal3, Point2, Point3, Ray, Transform, Vector3};
 use glam::DVec3;
 
-use super::solid_angle::SphericalRectangle;
 use super::{Candidate, Candidates, LocalSurface, weingarten};
 use crate::double;
 use crate::hit::{ShapeSample, SurfacePoint};
@@ -23,7 +23,7 @@ pub(crate) struct Patches {
 }
 
 /// Solid angles in which rectangles are sampled by direction, in steradians.
-const SPHERICAL_SAMPLING: std::ops::Range<f64> = 1e-4..6.22;
+const SPHERICAL_SAMPLING: std::ops::Range<f32> = 1e-4..6.22;
 
 /// Corners p00, p10, p01, p11.
 type Corners = [DVec3; 4];
@@ -276,7 +276,8 @@ impl Patches {
         if !rectangle(&c) {
             return None;
         }
-        let spherical = SphericalRectangle::new(c[0], c[1] - c[0], c[2] - c[0], double::point(p))?;
+        let [corner, end_u, end_v] = [c[0], c[1], c[2]].map(double::to_point);
+        let spherical = SphericalRectangle::new(p, corner, end_u - corner, end_v - corner)?;
         SPHERICAL_SAMPLING.contains(&spherical.solid_angle()).then_some(spherical)
     }
 
@@ -284,13 +285,13 @@ impl Patches {
     /// to be used.
     pub(crate) fn sample_solid_angle(&self, patch: u32, p: Point3, u: Point2) -> Option<(ShapeSample, f32)> {
         let spherical = self.spherical(patch, p)?;
-        let uv = spherical.sample([f64::from(u.x), f64::from(u.y)]);
-        Some((self.sample_at(patch, uv, 0.0), (1.0 / spherical.solid_angle()) as f32))
+        let uv = spherical.sample_shares(u);
+        Some((self.sample_at(patch, [uv.x, uv.y].map(f64::from), 0.0), spherical.pdf_w()))
     }
 
     /// The density per steradian of [`sample_solid_angle`](Self::sample_solid_angle).
     pub(crate) fn solid_angle_pdf(&self, patch: u32, p: Point3) -> Option<f32> {
-        self.spherical(patch, p).map(|spherical| (1.0 / spherical.solid_angle()) as f32)
+        self.spherical(patch, p).map(|spherical| spherical.pdf_w())
     }
 }
 

@@ -4,11 +4,11 @@
 //! p_i - p_2 = dpdu (u_i - u_2) + dpdv (v_i - v_2). Positions are formed in double precision, so that their error
 //! is that of rounding them.
 
+use etendue_math::warp::SphericalTriangle;
 use etendue_math::{Bounds3, Frame, Normal3, Point2, Point3, Transform, Vector3};
 use glam::DVec3;
 
 use super::LocalSurface;
-use super::solid_angle::SphericalTriangle;
 use crate::double;
 use crate::hit::{ShapeSample, SurfacePoint};
 use crate::mesh::TriangleMesh;
@@ -22,7 +22,7 @@ pub(crate) struct Triangles {
 }
 
 /// Solid angles in which sampling by direction is accurate and worth its price, in steradians, as in pbrt-v4.
-const SPHERICAL_SAMPLING: std::ops::Range<f64> = 3e-4..6.22;
+const SPHERICAL_SAMPLING: std::ops::Range<f32> = 3e-4..6.22;
 
 impl Triangles {
     /// Moves a mesh into the space of its group, reusing its memory.
@@ -213,7 +213,7 @@ impl Triangles {
 
     /// The triangle on the sphere of directions around `p`, where sampling by direction applies.
     fn spherical(&self, triangle: u32, p: Point3) -> Option<SphericalTriangle> {
-        let spherical = SphericalTriangle::new(&self.corners(triangle), double::point(p))?;
+        let spherical = SphericalTriangle::new(self.corners(triangle).map(double::to_point), p)?;
         SPHERICAL_SAMPLING.contains(&spherical.solid_angle()).then_some(spherical)
     }
 
@@ -226,14 +226,13 @@ impl Triangles {
         u: Point2,
     ) -> Option<(ShapeSample, f32)> {
         let spherical = self.spherical(triangle, p)?;
-        let b = spherical.sample([f64::from(u.x), f64::from(u.y)]);
-        let pdf_w = (1.0 / spherical.solid_angle()) as f32;
-        Some((self.sample_at(triangle, b.map(|b| b as f32), 0.0), pdf_w))
+        let [_, b1, b2] = spherical.sample(u)?;
+        Some((self.sample_at(triangle, [b1, b2], 0.0), spherical.pdf_w()))
     }
 
     /// The density per steradian of [`sample_solid_angle`](Self::sample_solid_angle).
     pub(crate) fn solid_angle_pdf(&self, triangle: u32, p: Point3) -> Option<f32> {
-        self.spherical(triangle, p).map(|spherical| (1.0 / spherical.solid_angle()) as f32)
+        self.spherical(triangle, p).map(|spherical| spherical.pdf_w())
     }
 }
 

@@ -86,6 +86,21 @@ impl SphericalRectangle {
     /// A point of the rectangle, uniform by solid angle.
     #[must_use]
     pub fn sample(&self, u: Point2) -> Point3 {
+        let [xu, yv] = self.sample_local(u);
+        let q = self.origin + self.x * xu + self.y * yv + self.z * self.z0;
+        Point3::new(q.x as f32, q.y as f32, q.z as f32)
+    }
+
+    /// The same point as shares of the two edges, in [0, 1].
+    #[must_use]
+    pub fn sample_shares(&self, u: Point2) -> Point2 {
+        let [xu, yv] = self.sample_local(u);
+        let share = |value: f64, low: f64, high: f64| (((value - low) / (high - low)) as f32).clamp(0.0, 1.0);
+        Point2::new(share(xu, self.x0, self.x1), share(yv, self.y0, self.y1))
+    }
+
+    /// The same point in the local frame.
+    fn sample_local(&self, u: Point2) -> [f64; 2] {
         let (u, v) = (f64::from(u.x), f64::from(u.y));
         // The cut that leaves the share u of the solid angle.
         let au = u * self.solid_angle + self.k;
@@ -98,9 +113,7 @@ impl SphericalRectangle {
         let h1 = self.y1 / (d2 + self.y1 * self.y1).sqrt();
         let hv = h0 + v * (h1 - h0);
         let yv = if hv * hv < 1.0 - 1e-12 { hv * (d2 / (1.0 - hv * hv)).sqrt() } else { self.y1 };
-        let yv = yv.clamp(self.y0, self.y1);
-        let q = self.origin + self.x * xu + self.y * yv + self.z * self.z0;
-        Point3::new(q.x as f32, q.y as f32, q.z as f32)
+        [xu, yv.clamp(self.y0, self.y1)]
     }
 
     /// The numbers for which [`sample`](Self::sample) chooses the point `q` of the rectangle.

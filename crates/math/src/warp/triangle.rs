@@ -41,13 +41,15 @@ pub fn invert_uniform_triangle(b: [f32; 3]) -> Point2 {
     }
 }
 
-/// A spherical triangle with its interior angles at `a`, `b`, `c`.
-struct SphericalTriangle {
+/// A triangle as seen from a point, ready to sample directions uniformly.
+#[derive(Clone, Copy, Debug)]
+pub struct SphericalTriangle {
+    corners: [Point3; 3],
+    origin: Point3,
+    /// Unit directions to the corners.
     a: DVec3,
     b: DVec3,
     c: DVec3,
-    /// Interior angle at `a`.
-    alpha: f64,
     /// Steradians.
     solid_angle: f64,
 }
@@ -58,7 +60,8 @@ fn dvec(v: Vector3) -> DVec3 {
 
 impl SphericalTriangle {
     /// The triangle `v` as seen from `p`; `None` if it fills no solid angle.
-    fn new(v: [Point3; 3], p: Point3) -> Option<Self> {
+    #[must_use]
+    pub fn new(v: [Point3; 3], p: Point3) -> Option<Self> {
         let a = dvec(v[0] - p).try_normalize()?;
         let b = dvec(v[1] - p).try_normalize()?;
         let c = dvec(v[2] - p).try_normalize()?;
@@ -68,10 +71,50 @@ impl SphericalTriangle {
         if solid_angle.is_nan() || solid_angle <= 1e-12 {
             return None;
         }
-        let n_ab = a.cross(b).try_normalize()?;
-        let n_ca = c.cross(a).try_normalize()?;
-        let alpha = n_ab.angle_between(-n_ca);
-        Some(Self { a, b, c, alpha, solid_angle })
+        Some(Self { corners: v, origin: p, a, b, c, solid_angle })
+    }
+
+    /// Interior angle at `a`.
+    fn alpha(&self) -> Option<f64> {
+        let n_ab = self.a.cross(self.b).try_normalize()?;
+        let n_ac = self.a.cross(self.c).try_normalize()?;
+        Some(n_ab.angle_between(n_ac))
+    }
+
+    /// Steradians.
+    #[must_use]
+    pub fn solid_angle(&self) -> f32 {
+        self.solid_angle as f32
+    }
+
+    /// Density of [`sample`](Self::sample) per steradian.
+    #[must_use]
+    pub fn pdf_w(&self) -> f32 {
+        (1.0 / self.solid_angle) as f32
+    }
+
+    /// Barycentric coordinates of a point of the triangle, uniform by solid angle; `None` where rounding leaves none.
+    #[must_use]
+    pub fn sample(&self, u: Point2) -> Option<[f32; 3]> {
+        let area = f64::from(u.x) * self.solid_angle;
+        let alpha = self.alpha()?;
+        let (sin_alpha, cos_alpha) = alpha.sin_cos();
+        let (s, c) = (area - alpha).sin_cos();
+        // The cut C' on the arc from A to C that leaves the area, by its distance from A.  [Arvo, section 3]
+        let (k_u, k_v) = (c - cos_alpha, s + sin_alpha * self.a.dot(self.b));
+        let numerator = k_v - (k_v * c - k_u * s) * cos_alpha;
+        let denominator = (k_v * s + k_u * c) * sin_alpha;
+        let cos_b = (-numerator / denominator).clamp(-1.0, 1.0);
+        let cos_b = if cos_b.is_nan() { 1.0 } else { cos_b };
+        let cut = self.a * cos_b + orthogonal_part(self.c, self.a)? * (1.0 - cos_b * cos_b).sqrt();
+        // The height on the arc from B to the cut.
+        let one_minus_cos = f64::from(u.y) * (1.0 - cut.dot(self.b));
+        let sine = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
+        let w = match orthogonal_part(cut, self.b) {
+            Some(across) => self.b * (1.0 - one_minus_cos) + across * sine,
+            None => self.b,
+        };
+        barycentric(self.corners, self.origin, w)
     }
 }
 
@@ -91,24 +134,7 @@ pub fn spherical_triangle_solid_angle(v: [Point3; 3], p: Point3) -> f32 {
 #[must_use]
 pub fn sample_spherical_triangle(v: [Point3; 3], p: Point3, u: Point2) -> Option<([f32; 3], f32)> {
     let t = SphericalTriangle::new(v, p)?;
-    let area = f64::from(u.x) * t.solid_angle;
-    let (sin_alpha, cos_alpha) = t.alpha.sin_cos();
-    let (s, c) = (area - t.alpha).sin_cos();
-    // The cut C' on the arc from A to C that leaves the area, by its distance from A.  [Arvo, section 3]
-    let (k_u, k_v) = (c - cos_alpha, s + sin_alpha * t.a.dot(t.b));
-    let numerator = k_v - (k_v * c - k_u * s) * cos_alpha;
-    let denominator = (k_v * s + k_u * c) * sin_alpha;
-    let cos_b = (-numerator / denominator).clamp(-1.0, 1.0);
-    let cos_b = if cos_b.is_nan() { 1.0 } else { cos_b };
-    let cut = t.a * cos_b + orthogonal_part(t.c, t.a)? * (1.0 - cos_b * cos_b).sqrt();
-    // The height on the arc from B to the cut.
-    let one_minus_cos = f64::from(u.y) * (1.0 - cut.dot(t.b));
-    let sine = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
-    let w = match orthogonal_part(cut, t.b) {
-        Some(across) => t.b * (1.0 - one_minus_cos) + across * sine,
-        None => t.b,
-    };
-    Some((barycentric(v, p, w)?, (1.0 / t.solid_angle) as f32))
+    Some((t.sample(u)?, t.pdf_w()))
 }
 
 /// Barycentric coordinates of the point where the ray from `p` along `w` meets the plane of the triangle.
