@@ -53,6 +53,14 @@ pub(crate) fn rounding_error(p: Point3) -> Vector3 {
     p.as_vector().abs() * f32::EPSILON + Vector3::splat(f32::MIN_POSITIVE)
 }
 
+/// The same for a point of a shape with coordinates up to `size` that is intersected in double precision. Near the
+/// origin of the world the error of that exceeds the rounding of the point: 2^-46 leaves it two decimal digits.
+#[inline]
+pub(crate) fn surface_error(p: Point3, size: f64) -> Vector3 {
+    const RELATIVE: f64 = 1.0 / (1_u64 << 46) as f64;
+    rounding_error(p) + Vector3::splat((size * RELATIVE) as f32)
+}
+
 /// Normal and tangents of a surface after an affine map: tangents are pushed forward, the normal is pulled back.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NormalMap {

@@ -239,3 +239,32 @@ fn lights_seen_edge_on_have_no_samples() {
     assert!(geometry.sample_from(id, 0, &reference, Point2::new(0.4, 0.6)).is_none());
     assert_eq!(geometry.pdf_from(id, 0, &reference, Vector3::new(-1.0, 0.0, 0.0)), 0.0);
 }
+
+/// A point of a sphere sees the rest of its inside, whichever way its coordinates were rounded. There the geometry term is
+/// the same for all points, A cos² / (4 R² cos²) = pi, so that each sample of the irradiance under radiance 1 is exact.
+#[test]
+fn points_of_a_sphere_see_its_inside() {
+    let far = Transform::translate(Vector3::new(5.0, -70.0, 0.3));
+    for transform in [Transform::IDENTITY, far] {
+        let (geometry, id) = single(Shape::sphere(1.3), transform, true);
+        let mut rng = Rng::new(23, 0);
+        let mut n_near = 0;
+        for _ in 0..2000 {
+            let place = geometry.sample_area(id, 0, rng.next_point2()).expect("a sphere has area");
+            let reference = Reference { p: place.p, n: Some(place.n) };
+            let (sample, pdf_w) =
+                geometry.sample_from(id, 0, &reference, rng.next_point2()).expect("a sample");
+            let offset = sample.p - place.p;
+            // Very near, which is rare, rounding of the points shows in the direction between them.
+            if offset.length() < 0.05 {
+                n_near += 1;
+                continue;
+            }
+            let cosine = place.n.dot_vector(offset) / offset.length();
+            assert!((cosine / pdf_w / PI - 1.0).abs() < 2e-3, "{} from {:?}", cosine / pdf_w, place.p);
+            let known = geometry.pdf_from_point(id, 0, &reference, sample.p, sample.n);
+            assert!((known / pdf_w - 1.0).abs() < 1e-4, "{known} and {pdf_w}");
+        }
+        assert!(n_near < 10, "{n_near} samples at the point itself");
+    }
+}

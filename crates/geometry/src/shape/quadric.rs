@@ -109,6 +109,8 @@ pub(crate) struct Quadric {
     /// Length of any unit vector after the map, if the map is a similarity.
     scale: Option<f64>,
     area: f64,
+    /// Bound of the magnitude of all coordinates.
+    size: f64,
 }
 
 impl Quadric {
@@ -119,11 +121,13 @@ impl Quadric {
         let normal_map = NormalMap::new(&shape_from_group);
         let scale = similarity(&group_from_shape);
         let mut quadric =
-            Self { shape, group_from_shape, shape_from_group, normal_map, sign, scale, area: 0.0 };
+            Self { shape, group_from_shape, shape_from_group, normal_map, sign, scale, area: 0.0, size: 0.0 };
         quadric.area = match scale {
             Some(scale) => shape.area() * scale * scale,
             None => quadric.integrated_area(),
         };
+        let bounds = quadric.bounds();
+        quadric.size = f64::from(bounds.min.abs().max(bounds.max.abs()).as_vector().max_element());
         quadric
     }
 
@@ -179,7 +183,7 @@ impl Quadric {
         let rounded = double::to_point(p);
         let surface = SurfacePoint {
             p: rounded,
-            p_error: double::rounding_error(rounded),
+            p_error: double::surface_error(rounded, self.size),
             ng: n,
             ns: n,
             uv: Point2::new(uv[0], uv[1]),
@@ -206,7 +210,7 @@ impl Quadric {
         let pdf_a = 1.0 / (self.shape.area() * self.stretch(sample.n));
         let sample = ShapeSample {
             p,
-            p_error: double::rounding_error(p),
+            p_error: double::surface_error(p, self.size),
             n: self.group_normal(sample.n),
             uv: Point2::new(sample.uv[0] as f32, sample.uv[1] as f32),
             pdf_a: pdf_a as f32,
@@ -237,10 +241,14 @@ impl Quadric {
         }
     }
 
-    /// The cone of directions from `p` to a whole sphere, unless `p` is inside.
+    /// The cone of directions from `p` to a whole sphere, unless `p` is inside or may be but for rounding: a point of
+    /// the sphere sees all of its inside, on whichever side its coordinates were rounded to.
     fn cone(&self, p: Point3) -> Option<Cone> {
         let (centre, radius) = self.whole_sphere()?;
         let to_centre = centre - double::point(p);
+        if to_centre.length() <= radius + double::vector(double::surface_error(p, self.size)).length() {
+            return None;
+        }
         let sin2_max = radius * radius / to_centre.length_squared();
         if sin2_max >= 1.0 - 1e-9 || !sin2_max.is_finite() {
             return None;
@@ -260,7 +268,7 @@ impl Quadric {
         let uv = self.shape.uv(local.p);
         let sample = ShapeSample {
             p,
-            p_error: double::rounding_error(p),
+            p_error: double::surface_error(p, self.size),
             n: double::to_normal(n * self.sign),
             uv: Point2::new(uv[0] as f32, uv[1] as f32),
             pdf_a: 0.0,

@@ -82,7 +82,9 @@ impl Sphere {
     fn candidate(&self, p: DVec3, t: f64) -> Option<Candidate> {
         let p = p * (self.radius / p.length());
         let [u, v] = self.uv(p);
-        let inside = p.z >= self.z_min && p.z <= self.z_max && azimuth(p) <= self.phi_max;
+        // Rounding may lift a pole above the sphere, where nothing must be cut off.
+        let z = p.z.clamp(-self.radius, self.radius);
+        let inside = z >= self.z_min && z <= self.z_max && azimuth(p) <= self.phi_max;
         (t > 0.0 && inside).then_some(Candidate { t, u, v })
     }
 

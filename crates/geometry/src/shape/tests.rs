@@ -312,6 +312,76 @@ fn check_departures(geometry: &Geometry, transform: &Transform, rng: &mut Rng) {
     assert!(n_missed * 50 <= n_returns, "{n_missed} of {n_returns} rays back missed");
 }
 
+/// A whole sphere has no hole at its poles, where rounding may put z beyond the radius.
+#[test]
+fn spheres_are_closed_at_the_poles() {
+    let mut rng = Rng::new(29, 0);
+    for radius in [0.3, 1.0, 50.0, 77.7] {
+        let (geometry, _) = single(Shape::sphere(radius), Transform::IDENTITY, false);
+        for pole in [radius, -radius] {
+            for _ in 0..500 {
+                let from = Point3::ORIGIN + direction(&mut rng) * (2.0 * radius);
+                let to = Point3::new(0.0, 0.0, pole);
+                if (from.z - pole) * pole <= 0.1 * radius * radius {
+                    continue;
+                }
+                let ray = Ray::new(from, (to - from).normalized());
+                let hit = geometry.intersect(&ray, f32::INFINITY, &any).expect("the pole");
+                assert!((hit.t / (to - from).length() - 1.0).abs() < 1e-4, "{ray:?} {hit:?}");
+            }
+        }
+    }
+}
+
+/// Rays leave shapes too that are wide and pass through the origin: there coordinates vanish and with them the rounding of the
+/// point, while the arithmetic of the intersection still rounds numbers of the shape's size.
+#[test]
+fn rays_leave_wide_shapes_at_the_origin() {
+    let patch = |size: f32| {
+        let mut patch = square();
+        for p in &mut patch.positions {
+            *p = Point3::new(size * (p.x - 0.4), size * (p.y - 0.7), 0.0);
+        }
+        Shape::Bilinear(patch)
+    };
+    let turn = Transform::rotate(0.7, Vector3::new(1.0, 2.0, 3.0)).expect("an axis");
+    let below = |r: f32| Transform::translate(Vector3::new(0.0, 0.0, -r));
+    let mut rng = Rng::new(19, 0);
+    for size in [0.37, 50.0, 1000.0] {
+        for transform in [Transform::IDENTITY, turn] {
+            leave_near_origin(patch(size), transform, &mut rng);
+            leave_near_origin(disk(size), transform, &mut rng);
+            leave_near_origin(Shape::sphere(size), transform * below(size), &mut rng);
+        }
+    }
+}
+
+/// Aims at points near the origin from the outside, where the shape is convex or flat.
+#[track_caller]
+fn leave_near_origin(shape: Shape, transform: Transform, rng: &mut Rng) {
+    let (geometry, _) = single(shape.clone(), transform, false);
+    let mut n_departures = 0;
+    for _ in 0..400 {
+        let size = [0.3, 1e-3, 1e-9, 0.0][rng.next_u32() as usize % 4];
+        let target = point_in_cube(rng, size);
+        let up = transform.vector(Vector3::new(0.0, 0.0, 1.0));
+        let view = (direction(rng) - up * 1.5).normalized();
+        let ray = Ray::new(target - view * 3.0, view);
+        let Some(hit) = geometry.intersect(&ray, f32::INFINITY, &any) else { continue };
+        let s = geometry.surface_point(&ray, &hit);
+        let side = s.ng.facing(-view);
+        for _ in 0..8 {
+            let w = direction(rng);
+            let w = if side.dot_vector(w) < 0.0 { -w } else { w };
+            let departing = Ray::new(offset_ray_origin(s.p, s.p_error, s.ng, w), w);
+            let again = geometry.intersect(&departing, f32::INFINITY, &any);
+            assert!(again.is_none(), "{shape:?} at {:?} towards {w:?}: {again:?}", s.p);
+            n_departures += 1;
+        }
+    }
+    assert!(n_departures > 500, "{n_departures}");
+}
+
 /// Quadrics of impossible size are left out instead of failing.
 #[test]
 fn impossible_quadrics_are_left_out() {
