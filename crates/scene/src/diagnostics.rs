@@ -3,6 +3,7 @@
 //! Reading and building never stop at the first problem: they collect [`Diagnostics`], and the front end prints
 //! them all, with file, line, column and an excerpt.
 
+use std::collections::HashSet;
 use std::fmt;
 
 /// Index of a file in [`Sources`].
@@ -159,6 +160,32 @@ impl Diagnostics {
         self.push(Severity::Warning, span.into(), message.into())
     }
 
+    /// Adds an error about a name that nothing of that kind has, with the nearest of the known names, or all of them.
+    pub fn unknown_name<'n>(
+        &mut self,
+        span: impl Into<Option<Span>>,
+        kind: &str,
+        name: &str,
+        known: impl IntoIterator<Item = &'n str>,
+    ) {
+        let mut known: Vec<&str> = known.into_iter().collect();
+        known.sort_unstable();
+        let error = self.error(span, format!("unknown {kind} \"{name}\""));
+        if let Some(near) = nearest_name(name, known.iter().copied()) {
+            error.with_help(format!("did you mean \"{near}\"?"));
+        } else if !known.is_empty() {
+            error.with_help(format!("known are: {}", known.join(", ")));
+        }
+    }
+
+    /// Keeps the first of problems that say the same of the same place, as those of an attribute that many shapes share.
+    pub fn remove_repetitions(&mut self) {
+        let mut seen = HashSet::new();
+        self.list.retain(|d| {
+            d.span.is_none_or(|span| seen.insert((span.file.0, span.start, span.end, d.message.clone())))
+        });
+    }
+
     /// True if any problem is an error.
     #[must_use]
     pub fn has_errors(&self) -> bool {
@@ -177,7 +204,8 @@ impl Diagnostics {
     }
 }
 
-/// The candidate nearest to `name` by edit distance, if near enough to be a slip of the keyboard.
+/// The candidate nearest to `name` by edit distance, if near enough to be a slip of the keyboard; the first in the
+/// alphabet if several are.
 #[must_use]
 pub fn nearest_name<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (name.chars().count() / 3).max(1) + 1;
@@ -185,7 +213,7 @@ pub fn nearest_name<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str
         .into_iter()
         .map(|candidate| (edit_distance(&name.to_lowercase(), &candidate.to_lowercase()), candidate))
         .filter(|(distance, _)| *distance <= limit)
-        .min_by_key(|(distance, _)| *distance)
+        .min()
         .map(|(_, candidate)| candidate)
 }
 

@@ -242,9 +242,8 @@ impl Filter {
             _ => {
                 let span = parameters.span();
                 parameters.accept_all();
-                let names: Vec<&str> = FILTERS.iter().map(|(name, _)| *name).collect();
-                let error = parameters.diagnostics().error(span, format!("unknown pixel filter \"{name}\""));
-                error.with_help(format!("known are: {}", names.join(", ")));
+                let known = FILTERS.iter().map(|(name, _)| *name);
+                parameters.diagnostics().unknown_name(span, "pixel filter", name, known);
                 return Self::default();
             }
         };

@@ -330,12 +330,8 @@ impl<'a, 'c> Parameters<'a, 'c> {
             return value;
         }
         let span = self.span_of(name);
-        let error = self.context.diagnostics.error(span, format!("unknown {name} \"{word}\""));
-        let known: Vec<&str> = choices.iter().map(|(key, _)| *key).collect();
-        error.with_help(match nearest_name(&word, known.iter().copied()) {
-            Some(near) => format!("did you mean \"{near}\"?"),
-            None => format!("known are: {}", known.join(", ")),
-        });
+        let known = choices.iter().map(|(key, _)| *key);
+        self.context.diagnostics.unknown_name(span, name, &word, known);
         pick(default).expect("the default is one of the choices")
     }
 

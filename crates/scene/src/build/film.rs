@@ -7,7 +7,7 @@ use crate::document::{Document, Entity, Value};
 use crate::film::{AovSpace, FilmKind, FilmSettings, PixelBounds};
 use crate::parameters::{ParameterSpec, Parameters};
 
-use super::{BuildContext, known_names, unknown_name};
+use super::{BuildContext, known_names};
 
 macro_rules! spec {
     ($name:literal, $kind:literal, $default:literal, $unit:literal, $doc:literal) => {
@@ -146,7 +146,7 @@ fn read_kind(p: &mut Parameters<'_, '_>) -> FilmKind {
         "spectral" => read_spectral(p),
         unknown => {
             let span = p.span();
-            unknown_name(p.diagnostics(), span, "film", unknown, known_names(FILMS));
+            p.diagnostics().unknown_name(span, "film", unknown, known_names(FILMS));
             FilmKind::Rgb
         }
     }
@@ -205,7 +205,7 @@ pub(super) fn build_sampler(document: &Document, context: &mut BuildContext<'_>)
         "sobol" | "zsobol" | "paddedsobol" | "pmj02bn" => (SamplerKind::Sobol, p.integer("pixelsamples", 16)),
         unknown => {
             let span = p.span();
-            unknown_name(p.diagnostics(), span, "sampler", unknown, known_names(SAMPLERS));
+            p.diagnostics().unknown_name(span, "sampler", unknown, known_names(SAMPLERS));
             p.accept_all();
             (SamplerKind::Sobol, 16)
         }

@@ -69,14 +69,8 @@ impl Builder<'_, '_> {
             "power" => LightSamplerKind::Power,
             "uniform" => LightSamplerKind::Uniform,
             unknown => {
-                let known = ["bvh", "power", "uniform"];
-                super::unknown_name(
-                    &mut self.context.diagnostics,
-                    parameter.span,
-                    "light sampler",
-                    unknown,
-                    known,
-                );
+                let known = LightSamplerKind::NAMES.map(|(name, _)| name);
+                self.context.diagnostics.unknown_name(parameter.span, "light sampler", unknown, known);
                 LightSamplerKind::default()
             }
         }

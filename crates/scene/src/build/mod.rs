@@ -7,17 +7,17 @@ mod camera;
 mod film;
 mod lights;
 mod materials;
+mod meshes;
 mod shapes;
 #[cfg(test)]
 mod tests;
-mod textures;
 
 use std::collections::HashMap;
 
 use etendue_geometry::{GeometryBuilder, ObjectId};
 
 use crate::assets::Assets;
-use crate::diagnostics::{Diagnostics, Span, nearest_name};
+use crate::diagnostics::Diagnostics;
 use crate::document::{Document, Entity, InstanceEntity};
 use crate::material::{MaterialId, Materials};
 use crate::parameters::{BuildContext, ParameterSpec};
@@ -27,7 +27,8 @@ use crate::texture::Textures;
 pub use film::{FILMS, SAMPLERS};
 pub use shapes::SHAPES;
 
-use shapes::{Emitter, MeshStore, Target};
+use meshes::MeshStore;
+use shapes::{Emitter, Target};
 
 /// The state of a build.
 struct Builder<'d, 'a> {
@@ -72,11 +73,12 @@ impl Scene {
         let camera = builder.build_camera(&film);
         builder.check_accelerator();
         let lights = builder.build_lights(&geometry);
-        if lights.lights.is_empty() {
+        if lights.lights.is_empty() && !builder.context.diagnostics.has_errors() {
             builder.context.diagnostics.warning(None, "the scene has no lights; the image will be black");
         }
-        let Builder { context, mut textures, materials, attributes, .. } = builder;
+        let Builder { mut context, mut textures, materials, attributes, .. } = builder;
         textures.spectra = context.spectra;
+        context.diagnostics.remove_repetitions();
         if context.diagnostics.has_errors() {
             return (None, context.diagnostics);
         }
@@ -106,6 +108,13 @@ impl Scene {
 }
 
 impl Builder<'_, '_> {
+    /// In the order of the document: a texture may use those before it.
+    fn build_textures(&mut self) {
+        for entity in &self.document.textures {
+            self.textures.define(entity, &mut self.context);
+        }
+    }
+
     fn build_geometry(&mut self, meshes: &mut MeshStore) -> etendue_geometry::Geometry {
         let document = self.document;
         let mut geometry = GeometryBuilder::new();
@@ -135,8 +144,8 @@ impl Builder<'_, '_> {
     ) -> Option<ObjectId> {
         let found = objects.get(instance.object.as_str()).copied();
         if found.is_none() {
-            let diagnostics = &mut self.context.diagnostics;
-            unknown_name(diagnostics, instance.span, "object", &instance.object, objects.keys().copied());
+            let known = objects.keys().copied();
+            self.context.diagnostics.unknown_name(instance.span, "object", &instance.object, known);
         }
         found
     }
@@ -161,9 +170,7 @@ impl Builder<'_, '_> {
                 let message = "the accelerator \"kdtree\" is not available yet; \"bvh\" stands in for it";
                 self.context.diagnostics.warning(entity.span, message);
             }
-            unknown => {
-                unknown_name(&mut self.context.diagnostics, entity.span, "accelerator", unknown, ["bvh"])
-            }
+            unknown => self.context.diagnostics.unknown_name(entity.span, "accelerator", unknown, ["bvh"]),
         }
     }
 }
@@ -173,22 +180,4 @@ fn known_names(
     table: &'static [(&'static str, &'static [ParameterSpec])],
 ) -> impl Iterator<Item = &'static str> {
     table.iter().map(|(name, _)| *name)
-}
-
-/// Reports a name that nothing has, with the nearest one that something has.
-pub(crate) fn unknown_name<'n>(
-    diagnostics: &mut Diagnostics,
-    span: Option<Span>,
-    kind: &str,
-    name: &str,
-    known: impl IntoIterator<Item = &'n str>,
-) {
-    let mut known: Vec<&str> = known.into_iter().collect();
-    known.sort_unstable();
-    let error = diagnostics.error(span, format!("unknown {kind} \"{name}\""));
-    if let Some(near) = nearest_name(name, known.iter().copied()) {
-        error.with_help(format!("did you mean \"{near}\"?"));
-    } else if !known.is_empty() {
-        error.with_help(format!("known are: {}", known.join(", ")));
-    }
 }

@@ -103,9 +103,8 @@ impl Camera {
             _ => {
                 if name != "perspective" {
                     let span = parameters.span();
-                    let names: Vec<&str> = CAMERAS.iter().map(|(name, _)| *name).collect();
-                    let error = parameters.diagnostics().error(span, format!("unknown camera \"{name}\""));
-                    error.with_help(format!("known are: {}", names.join(", ")));
+                    let known = CAMERAS.iter().map(|(name, _)| *name);
+                    parameters.diagnostics().unknown_name(span, "camera", name, known);
                 }
                 Projection::Perspective(read_perspective(parameters, size))
             }

@@ -13,7 +13,6 @@ use super::{
     InfiniteImageLight, InfiniteImageLightId, InfinitePortalLight, InfinitePortalLightId, Light, LightTables,
     PointLight, ProjectionLight, ProjectionLightId, SpotLight,
 };
-use crate::diagnostics::nearest_name;
 use crate::document::{Entity, LightEntity};
 use crate::parameters::{BuildContext, ParameterSpec, Parameters, SpectrumRole};
 
@@ -182,17 +181,13 @@ impl LightTables {
 fn find_kind(
     entity: &Entity,
     what: &str,
-    mut kinds: impl Iterator<Item = LightKind> + Clone,
+    kinds: impl Iterator<Item = LightKind> + Clone,
     context: &mut BuildContext,
 ) -> Option<LightKind> {
     let found = kinds.clone().find(|kind| kind.name() == entity.type_name);
     if found.is_none() {
-        let near = nearest_name(&entity.type_name, kinds.by_ref().map(LightKind::name));
-        let text = format!("unknown {what} \"{}\"", entity.type_name);
-        let error = context.diagnostics.error(entity.span, text);
-        if let Some(near) = near {
-            error.with_help(format!("did you mean \"{near}\"?"));
-        }
+        let known = kinds.map(LightKind::name);
+        context.diagnostics.unknown_name(entity.span, what, &entity.type_name, known);
     }
     found
 }

@@ -8,7 +8,6 @@ use std::collections::HashMap;
 use etendue_math::{hash64, unit_f32};
 
 use super::{MaterialContext, MaterialId};
-use crate::diagnostics::nearest_name;
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::{FloatTexture, Textures};
 
@@ -51,12 +50,7 @@ impl MixMaterial {
         let mut find = |name: &String| {
             let found = named.get(name).copied();
             if found.is_none() {
-                let near = nearest_name(name, named.keys().map(String::as_str)).map(str::to_owned);
-                let message = format!("no material named \"{name}\" is defined before its use");
-                let error = p.diagnostics().error(span, message);
-                if let Some(near) = near {
-                    error.with_help(format!("did you mean \"{near}\"?"));
-                }
+                p.diagnostics().unknown_name(span, "material", name, named.keys().map(String::as_str));
             }
             found
         };

@@ -50,7 +50,6 @@ pub use roughness::{Roughness, RoughnessScale};
 pub use thin_dielectric::ThinDielectricMaterial;
 
 use crate::bsdf::Bsdf;
-use crate::diagnostics::nearest_name;
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::{SpectrumTexture, Textures};
 
@@ -169,7 +168,9 @@ impl Material {
             "mix" => Self::Mix(MixMaterial::build(p, named)?),
             "interface" | "none" | "" => Self::Interface,
             other => {
-                report_unknown(p, other);
+                let span = p.span();
+                let known = MATERIALS.iter().map(|material| material.name);
+                p.diagnostics().unknown_name(span, "material", other, known);
                 return None;
             }
         })
@@ -205,14 +206,4 @@ impl Material {
             Self::Mix(_) | Self::Interface => None,
         }
     }
-}
-
-fn report_unknown(p: &mut Parameters<'_, '_>, name: &str) {
-    let span = p.span();
-    let error = p.diagnostics().error(span, format!("unknown material \"{name}\""));
-    let known = || MATERIALS.iter().map(|material| material.name);
-    error.with_help(match nearest_name(name, known()) {
-        Some(near) => format!("did you mean \"{near}\"?"),
-        None => format!("known are: {}", known().collect::<Vec<_>>().join(", ")),
-    });
 }

@@ -4,7 +4,7 @@ use etendue_image::Encoding;
 use etendue_math::{Transform, Vector3};
 use etendue_spectrum::{ColorSpaceName, Spectrum};
 
-use crate::diagnostics::{Diagnostics, nearest_name};
+use crate::diagnostics::Diagnostics;
 use crate::document::{TextureEntity, TextureValue};
 use crate::parameters::{BuildContext, ParameterSpec, Parameters, SpectrumRole};
 
@@ -315,13 +315,9 @@ fn report_unknown(p: &mut Parameters<'_, '_>, value: &str, known: &[(&str, &[Par
     p.accept_all();
     if name == "ptex" {
         p.diagnostics()
-            .warning(span, "Ptex textures are not available yet; gray of 0.5 stands in for this one");
+            .warning(span, "the texture \"ptex\" is not available yet; the constant 0.5 stands in for it");
         return;
     }
-    let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-    let error = p.diagnostics().error(span, format!("unknown {value} texture \"{name}\""));
-    error.with_help(match nearest_name(name, names.iter().copied()) {
-        Some(near) => format!("did you mean \"{near}\"?"),
-        None => format!("known are: {}", names.join(", ")),
-    });
+    let known = known.iter().map(|(name, _)| *name);
+    p.diagnostics().unknown_name(span, &format!("{value} texture"), name, known);
 }
