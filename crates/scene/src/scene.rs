@@ -107,7 +107,12 @@ impl Scene {
     #[inline]
     #[must_use]
     pub const fn light_context(&self) -> LightContext<'_> {
-        LightContext { geometry: &self.geometry, spectra: &self.textures.spectra, tables: &self.light_tables }
+        LightContext {
+            geometry: &self.geometry,
+            textures: &self.textures,
+            spectra: &self.textures.spectra,
+            tables: &self.light_tables,
+        }
     }
 
     /// The light of that id.

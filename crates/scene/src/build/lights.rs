@@ -6,6 +6,7 @@ use crate::document::Value;
 use crate::light::{
     AreaLight, Light, LightContext, LightId, LightSampler, LightSamplerKind, LightTables, SceneSphere,
 };
+use crate::texture::FloatTexture;
 
 use super::{Builder, Emitter};
 
@@ -31,7 +32,8 @@ impl Builder<'_, '_> {
         let ids = || (0..lights.len() as u32).map(LightId);
         let infinite = ids().filter(|id| lights[id.0 as usize].is_environment()).collect();
         let kind = self.light_sampler_kind();
-        let context = LightContext { geometry, spectra: &self.context.spectra, tables: &tables };
+        let textures = &self.textures;
+        let context = LightContext { geometry, textures, spectra: &self.context.spectra, tables: &tables };
         let sampler = LightSampler::new(kind, &lights, &context);
         BuiltLights { lights, tables, infinite, sampler }
     }
@@ -45,13 +47,18 @@ impl Builder<'_, '_> {
         lights: &mut Vec<Light>,
     ) {
         let id = emitter.geometry;
+        debug_assert!(geometry.can_emit(id), "moving and instanced shapes are refused when shapes are added");
         let primitives = 0..geometry.n_primitives(id);
         let area: f64 = primitives.clone().map(|primitive| f64::from(geometry.area(id, primitive))).sum();
         let entity = &self.document.area_lights[emitter.area_light];
-        let Some(emission) = tables.build_emission(entity, &mut self.context, area as f32) else { return };
-        self.attributes[id.0 as usize].first_light = Some(LightId(lights.len() as u32));
-        lights
-            .extend(primitives.map(|primitive| Light::Area(AreaLight { geometry: id, primitive, emission })));
+        let attributes = &mut self.attributes[id.0 as usize];
+        let alpha = attributes.alpha.unwrap_or(FloatTexture::Constant(1.0));
+        let Some(emission) = tables.build_emission(entity, &mut self.context, area as f32, alpha) else {
+            return;
+        };
+        attributes.first_light = Some(LightId(lights.len() as u32));
+        let primitives = primitives.map(|primitive| AreaLight::new(id, primitive, emission, tables));
+        lights.extend(primitives.map(Light::Area));
     }
 
     /// The choice belongs to the integrator's parameters, but is prepared with the scene.

@@ -34,7 +34,13 @@ macro_rules! spec {
     };
 }
 
-const ALPHA: ParameterSpec = spec!("alpha", "float texture", "1", "", "share of rays that meet the surface");
+const ALPHA: ParameterSpec = spec!(
+    "alpha",
+    "float texture",
+    "1",
+    "",
+    "share of rays that meet the surface; 0 makes an emissive surface an invisible light"
+);
 const PHI_MAX: ParameterSpec = spec!("phimax", "float", "360", "degrees", "largest azimuth");
 const SPHERE: &[ParameterSpec] = &[
     spec!("radius", "float", "1", "m", "radius"),

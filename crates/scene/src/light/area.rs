@@ -3,6 +3,11 @@
 //!
 //! As in pbrt-v4, a picture is looked up with the shape's (u, v), v upwards. Power is split between the primitives by
 //! area: `power` of a mesh is that of the whole shape (pbrt-v4 gives that power to every triangle).
+//!
+//! **Alpha.** Rays meet a surface of alpha a with probability a, and then find the radiance L; a sample of the light
+//! therefore returns the mean, a L. Constant alpha 0 is the exception, as in pbrt-v4: it makes an invisible light, whose
+//! surface no ray meets, but which is sampled with the whole of L. Sampling is then the only technique that finds it, so
+//! that it counts as a delta light in multiple importance sampling.
 
 use std::f32::consts::PI;
 
@@ -16,6 +21,7 @@ use super::{
     LightTables,
 };
 use crate::parameters::{ParameterSpec, Parameters};
+use crate::texture::{FloatTexture, TextureContext};
 
 /// Index of an emission in [`LightTables`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,6 +38,10 @@ pub struct AreaEmission {
     two_sided: bool,
     /// Measures of the mean radiance.
     mean: LightPower,
+    /// Share of the surface that emits.
+    coverage: FloatTexture,
+    /// False if no ray meets the surface.
+    is_visible: bool,
 }
 
 impl AreaEmission {
@@ -48,7 +58,9 @@ impl AreaEmission {
     /// The same radiance everywhere.
     #[must_use]
     pub fn uniform(radiance: Spectrum, two_sided: bool, spectra: &SpectrumTables) -> Self {
-        Self { radiance, picture: None, two_sided, mean: LightPower::of(&radiance, spectra) }
+        let mean = LightPower::of(&radiance, spectra);
+        let coverage = FloatTexture::Constant(1.0);
+        Self { radiance, picture: None, two_sided, mean, coverage, is_visible: true }
     }
 
     /// Radiance from a picture, times `scale`.
@@ -62,6 +74,18 @@ impl AreaEmission {
     ) -> Self {
         let radiance = image.mean().scaled(scale);
         Self { picture: Some((id, scale)), ..Self::uniform(radiance, two_sided, spectra) }
+    }
+
+    /// On a shape of which rays meet the share `alpha`.
+    #[must_use]
+    pub fn with_alpha(self, alpha: FloatTexture) -> Self {
+        match alpha {
+            FloatTexture::Constant(alpha) if alpha <= 0.0 => Self { is_visible: false, ..self },
+            FloatTexture::Constant(alpha) => {
+                Self { coverage: FloatTexture::Constant(alpha.min(1.0)), ..self }
+            }
+            FloatTexture::Node(_) => Self { coverage: alpha, ..self },
+        }
     }
 
     /// True if both sides emit.
@@ -90,10 +114,27 @@ impl AreaEmission {
         context.tables.image(image).bilinear(uv, context.spectra, lambda) * scale
     }
 
-    /// Flux per square metre of surface, of one or both sides.
+    /// Flux per square metre of surface, of one or both sides; textured alpha counts as 1.
     #[must_use]
     pub fn exitance(&self) -> LightPower {
-        self.mean * f64::from(self.sides() * PI)
+        self.mean * f64::from(self.sides() * PI * self.mean_coverage())
+    }
+
+    /// Share of the surface that emits; 1 for textures, whose mean is not known.
+    fn mean_coverage(&self) -> f32 {
+        self.coverage.constant().unwrap_or(1.0)
+    }
+
+    /// Share of the surface that emits at a point with normal `n`.
+    #[inline]
+    fn coverage(&self, context: &LightContext, p: Point3, n: Normal3, uv: Point2) -> f32 {
+        match self.coverage {
+            FloatTexture::Constant(coverage) => coverage,
+            FloatTexture::Node(_) => {
+                let at = TextureContext { p, n, uv, ..TextureContext::default() };
+                context.textures.eval_float(self.coverage, &at).clamp(0.0, 1.0)
+            }
+        }
     }
 
     const fn sides(&self) -> f32 {
@@ -135,9 +176,23 @@ pub struct AreaLight {
     pub primitive: u32,
     /// What it emits.
     pub emission: AreaEmissionId,
+    is_visible: bool,
 }
 
 impl AreaLight {
+    /// A primitive of `geometry` with an emission of `tables`.
+    #[must_use]
+    pub fn new(geometry: GeometryId, primitive: u32, emission: AreaEmissionId, tables: &LightTables) -> Self {
+        let is_visible = tables.emissions[emission.0 as usize].is_visible;
+        Self { geometry, primitive, emission, is_visible }
+    }
+
+    /// False if no ray meets its surface.
+    #[must_use]
+    pub const fn is_visible(&self) -> bool {
+        self.is_visible
+    }
+
     fn emission<'a>(&self, context: &LightContext<'a>) -> &'a AreaEmission {
         &context.tables.emissions[self.emission.0 as usize]
     }
@@ -163,18 +218,22 @@ impl AreaLight {
         let (s, pdf_w) = context.geometry.sample_from(self.geometry, self.primitive, reference, u)?;
         let to_light = s.p - reference.p;
         let wi = to_light.try_normalized()?;
-        let le = self.le(context, s.n, s.uv, -wi, lambda);
+        let emission = self.emission(context);
+        let le = emission.le(context, s.n, s.uv, -wi, lambda) * emission.coverage(context, s.p, s.n, s.uv);
         (pdf_w > 0.0 && pdf_w.is_finite() && !le.is_black()).then(|| LightSample {
             wi,
             le,
             pdf_w,
             distance: to_light.length(),
-            is_delta: false,
+            is_delta: !self.is_visible,
             p_light: Some(LightPoint { p: s.p, p_error: s.p_error, n: Some(s.n), uv: s.uv }),
         })
     }
 
     pub(super) fn pdf_li(&self, context: &LightContext, reference: &Reference, wi: Vector3) -> f32 {
+        if !self.is_visible {
+            return 0.0;
+        }
         context.geometry.pdf_from(self.geometry, self.primitive, reference, wi)
     }
 
@@ -185,6 +244,9 @@ impl AreaLight {
         p: Point3,
         ng: Normal3,
     ) -> f32 {
+        if !self.is_visible {
+            return 0.0;
+        }
         context.geometry.pdf_from_point(self.geometry, self.primitive, reference, p, ng)
     }
 
@@ -205,7 +267,7 @@ impl AreaLight {
         let local = warp::sample_cosine_hemisphere(u_direction);
         let w = Frame::from_z(s.n.as_vector() * side).to_world(local);
         let pdf_w = warp::cosine_hemisphere_pdf(local.z) / emission.sides();
-        let le = emission.le(context, s.n, s.uv, w, lambda);
+        let le = emission.le(context, s.n, s.uv, w, lambda) * emission.coverage(context, s.p, s.n, s.uv);
         (pdf_w > 0.0 && s.pdf_a > 0.0 && !le.is_black()).then(|| EmittedRay {
             ray: Ray::new(s.p, w),
             p_error: s.p_error,
@@ -241,7 +303,7 @@ impl AreaLight {
             w,
             cos_theta_o,
             cos_theta_e: 0.0,
-            intensity: (emission.mean.weight * f64::from(area)) as f32,
+            intensity: (emission.mean.weight * f64::from(area * emission.mean_coverage())) as f32,
             two_sided: emission.two_sided,
         })
     }

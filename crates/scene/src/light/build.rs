@@ -15,6 +15,7 @@ use super::{
 };
 use crate::document::{Entity, LightEntity};
 use crate::parameters::{BuildContext, ParameterSpec, Parameters, SpectrumRole};
+use crate::texture::FloatTexture;
 
 /// Shorthand for tables of parameters.
 pub(super) const fn spec(
@@ -162,18 +163,19 @@ impl LightTables {
         Some(Light::InfiniteConstant(InfiniteConstantLight::build(p, &source)))
     }
 
-    /// The emission of an `AreaLightSource` on a shape of total area `area_m2`.
+    /// The emission of an `AreaLightSource` on a shape of total area `area_m2`, of which rays meet the share `alpha`.
     pub fn build_emission(
         &mut self,
         entity: &Entity,
         context: &mut BuildContext,
         area_m2: f32,
+        alpha: FloatTexture,
     ) -> Option<AreaEmissionId> {
         find_kind(entity, "area light", [LightKind::Diffuse].into_iter(), context)?;
         let mut p = Parameters::new(entity, context);
         let emission = AreaEmission::build(&mut p, area_m2, self);
         p.finish();
-        self.emissions.push(emission?);
+        self.emissions.push(emission?.with_alpha(alpha));
         Some(AreaEmissionId(self.emissions.len() as u32 - 1))
     }
 }

@@ -4,6 +4,8 @@ use etendue_geometry::{Geometry, Reference};
 use etendue_math::{Bounds3, Frame, Normal3, Point2, Point3, Ray, Vector3, warp};
 use etendue_spectrum::{Sampled, SpectrumTables};
 
+use crate::texture::Textures;
+
 use super::{
     AreaEmission, GoniometricLight, InfiniteImageLight, InfinitePortalLight, LightImage, LightImageId,
     ProjectionLight,
@@ -90,6 +92,8 @@ impl LightTables {
 pub struct LightContext<'a> {
     /// Shapes of area lights.
     pub geometry: &'a Geometry,
+    /// Alpha of area lights.
+    pub textures: &'a Textures,
     /// Tabulated spectra.
     pub spectra: &'a SpectrumTables,
     /// Arenas of lights.
@@ -114,9 +118,9 @@ pub struct LightPoint {
 pub struct LightSample {
     /// Unit direction from the reference point to the light.
     pub wi: Vector3,
-    /// Radiance that arrives from there; for delta lights, irradiance on a surface that faces the light.
+    /// Radiance that arrives from there; for delta lights without a surface, irradiance where one faces the light.
     pub le: Sampled,
-    /// Density per steradian; 1 for delta lights.
+    /// Density per steradian; 1 for delta lights without a surface.
     pub pdf_w: f32,
     /// Distance to the light in metres; infinite for lights at infinity.
     pub distance: f32,

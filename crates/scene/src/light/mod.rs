@@ -8,8 +8,8 @@
 //!
 //! of which [`Light::sample_li`] draws one term: a direction `wi`, the radiance that arrives along it if nothing is
 //! in the way, and the density per steradian. Visibility V is the caller's. For lights that are a delta function in
-//! direction (`is_delta`), the integral is already done: `le` is irradiance per unit cosine (I/r^2, or E for distant
-//! lights) and `pdf_w` is 1.
+//! direction, the integral is already done: `le` is irradiance per unit cosine (I/r^2, or E for distant lights) and
+//! `pdf_w` is 1. No other technique finds them (`is_delta`), nor surfaces that let all rays pass.
 //!
 //! **Units.** Radiance inside the renderer is K_m = 683 lm/W times W/(m^2 sr nm), so that its integral against
 //! y-bar is luminance in cd/m^2 (see [`emission`]). Lights follow pbrt-v4 (Pharr, Jakob and Humphreys 2023,
@@ -231,13 +231,19 @@ impl Light {
         dispatch!(self, context, light => light.bounds(context))
     }
 
-    /// True if no ray can meet the light by chance: its emission is a delta function of position or direction.
+    /// True if no ray can meet the light by chance: its emission is a delta function of position or direction, or rays
+    /// pass its surface.
     #[must_use]
     pub const fn is_delta(&self) -> bool {
-        matches!(
-            self,
-            Self::Point(_) | Self::Spot(_) | Self::Distant(_) | Self::Goniometric(_) | Self::Projection(_)
-        )
+        match self {
+            Self::Point(_)
+            | Self::Spot(_)
+            | Self::Distant(_)
+            | Self::Goniometric(_)
+            | Self::Projection(_) => true,
+            Self::InfiniteConstant(_) | Self::InfiniteImage(_) | Self::InfinitePortal(_) => false,
+            Self::Area(light) => !light.is_visible(),
+        }
     }
 
     /// True if light comes from beyond the scene, so that it has no place (environments and distant lights).

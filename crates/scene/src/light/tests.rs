@@ -18,12 +18,14 @@ use crate::assets::Assets;
 use crate::diagnostics::Diagnostics;
 use crate::document::{Entity, LightEntity, Parameter, Value};
 use crate::parameters::BuildContext;
+use crate::texture::{FloatTexture, Textures};
 
 const SIGNIFICANCE: f64 = 1e-5;
 
 /// Everything that a light refers to, owned.
 struct World {
     geometry: Geometry,
+    textures: Textures,
     spectra: SpectrumTables,
     tables: LightTables,
     lights: Vec<Light>,
@@ -47,12 +49,13 @@ impl World {
         for (id, entity) in emissive {
             let n = geometry.n_primitives(id);
             let area = (0..n).map(|primitive| geometry.area(id, primitive)).sum();
-            let Some(emission) = tables.build_emission(&entity, &mut context, area) else { continue };
-            lights
-                .extend((0..n).map(|primitive| Light::Area(AreaLight { geometry: id, primitive, emission })));
+            let alpha = FloatTexture::Constant(1.0);
+            let Some(emission) = tables.build_emission(&entity, &mut context, area, alpha) else { continue };
+            let primitives = (0..n).map(|primitive| AreaLight::new(id, primitive, emission, &tables));
+            lights.extend(primitives.map(Light::Area));
         }
         let (spectra, diagnostics) = (context.spectra, context.diagnostics);
-        Self { geometry, spectra, tables, lights, diagnostics }
+        Self { geometry, textures: Textures::default(), spectra, tables, lights, diagnostics }
     }
 
     /// One light without shapes.
@@ -70,7 +73,12 @@ impl World {
     }
 
     fn context(&self) -> LightContext<'_> {
-        LightContext { geometry: &self.geometry, spectra: &self.spectra, tables: &self.tables }
+        LightContext {
+            geometry: &self.geometry,
+            textures: &self.textures,
+            spectra: &self.spectra,
+            tables: &self.tables,
+        }
     }
 
     fn light(&self) -> &Light {
