@@ -30,6 +30,8 @@ pub(crate) enum Command {
     Merge(MergeArguments),
     /// Turn radiance into a picture for a display
     Tonemap(TonemapArguments),
+    /// Run an experiment with the renderer: a table and a figure
+    Study(StudyArguments),
 }
 
 /// Arguments of `render`.
@@ -233,6 +235,32 @@ pub(crate) enum OperatorArgument {
     Exponential,
     /// Photographic operator of Reinhard et al. 2002, global
     Reinhard,
+}
+
+/// Arguments of `study`.
+#[derive(Args, Debug)]
+pub(crate) struct StudyArguments {
+    /// Which experiment
+    #[arg(value_enum)]
+    pub(crate) name: StudyName,
+    /// Folder for NAME.csv and NAME.svg
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    pub(crate) out: PathBuf,
+    /// A rough version in a tenth of the time
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Random seed
+    #[arg(long, value_name = "N", default_value = "0")]
+    pub(crate) seed: u64,
+}
+
+/// An experiment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StudyName {
+    /// Error against samples for every sampler
+    Convergence,
+    /// How the mean of one pixel settles
+    Pixel,
 }
 
 fn parse_duration(text: &str) -> Result<Duration, String> {

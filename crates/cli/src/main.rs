@@ -15,6 +15,7 @@ mod progress;
 mod render;
 mod report;
 mod stats;
+mod study;
 mod tonemap;
 
 use std::process::ExitCode;
@@ -32,6 +33,7 @@ fn main() -> ExitCode {
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
         Command::Tonemap(arguments) => tonemap::run(&arguments),
+        Command::Study(arguments) => study::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -3,6 +3,7 @@
 pub use etendue_geometry as geometry;
 pub use etendue_image as image;
 pub use etendue_io as io;
+pub use etendue_lab as lab;
 pub use etendue_math as math;
 pub use etendue_scene as scene;
 pub use etendue_spectrum as spectrum;

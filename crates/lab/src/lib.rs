@@ -1,0 +1,21 @@
+//! Studies: experiments with the renderer that anyone can rerun, each with its table and its figure.
+//!
+//! A study is a function from settings to a result that knows its CSV text and its SVG picture. It depends on its seed
+//! alone, never on the number of threads. Front ends write the files.
+
+pub mod estimator;
+pub mod scenes;
+
+pub mod convergence;
+pub mod pixel;
+
+pub mod fit;
+pub mod plot;
+
+pub use convergence::{Convergence, ConvergenceSettings, convergence};
+pub use estimator::{Estimator, SamplerChoice};
+pub use pixel::{PixelSettings, PixelStudy, pixel};
+pub use scenes::StudyScene;
+
+#[cfg(test)]
+mod tests;
