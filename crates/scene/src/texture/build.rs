@@ -179,13 +179,11 @@ impl Textures {
                 b: p.spectrum_texture("tex2", WHITE, role),
                 direction: read_direction(p, world_from_texture),
             }),
-            "bilerp" => {
-                let mapping = Mapping2::from_parameters(p, world_from_texture);
-                let mut corner = |name, default| p.spectrum(name, role).unwrap_or(default);
-                let corners =
-                    [corner("v00", BLACK), corner("v01", WHITE), corner("v10", BLACK), corner("v11", WHITE)];
-                SpectrumTextureNode::Bilerp(Bilerp { mapping, corners })
-            }
+            "bilerp" => SpectrumTextureNode::Bilerp(Bilerp {
+                mapping: Mapping2::from_parameters(p, world_from_texture),
+                corners: [("v00", BLACK), ("v01", WHITE), ("v10", BLACK), ("v11", WHITE)]
+                    .map(|(name, default)| p.spectrum(name, role).unwrap_or(default)),
+            }),
             "checkerboard" => SpectrumTextureNode::Checkerboard(Checkerboard {
                 mapping: read_check_mapping(p, world_from_texture),
                 a: p.spectrum_texture("tex1", WHITE, role),
@@ -203,18 +201,7 @@ impl Textures {
                 let uplift = Uplift::new(role, self.image(texture.image).texels(), &mut p.context.spectra);
                 SpectrumTextureNode::Image(SpectrumImageTexture { texture, uplift })
             }
-            "marble" => {
-                let node = Marble {
-                    mapping: Mapping3::new(world_from_texture),
-                    octaves: read_octaves(p),
-                    scale: p.float("scale", 1.0),
-                    variation: p.float("variation", 0.2),
-                };
-                // Stone is a reflectance, whatever it is used for.
-                let spectra = &mut p.context.spectra;
-                let uplift = Uplift::in_color_space(SpectrumRole::Albedo, ColorSpaceName::Srgb, spectra);
-                SpectrumTextureNode::Marble(node, uplift)
-            }
+            "marble" => read_marble(p, world_from_texture),
             _ => {
                 report_unknown(p, "spectrum", SPECTRUM_TEXTURES);
                 return SpectrumTexture::Constant(Spectrum::Constant(0.5));
@@ -299,6 +286,19 @@ fn read_check_mapping(p: &mut Parameters<'_, '_>, world_from_texture: &Transform
             CheckMapping::Plane(Mapping2::default())
         }
     }
+}
+
+fn read_marble(p: &mut Parameters<'_, '_>, world_from_texture: &Transform) -> SpectrumTextureNode {
+    let node = Marble {
+        mapping: Mapping3::new(world_from_texture),
+        octaves: read_octaves(p),
+        scale: p.float("scale", 1.0),
+        variation: p.float("variation", 0.2),
+    };
+    // Stone is a reflectance, whatever it is used for.
+    let spectra = &mut p.context.spectra;
+    let uplift = Uplift::in_color_space(SpectrumRole::Albedo, ColorSpaceName::Srgb, spectra);
+    SpectrumTextureNode::Marble(node, uplift)
 }
 
 fn read_octaves(p: &mut Parameters<'_, '_>) -> Octaves {
