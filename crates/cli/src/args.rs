@@ -105,6 +105,8 @@ pub(crate) enum WavelengthArgument {
     Hero,
     /// One random wavelength
     Single,
+    /// Red, green and blue of linear sRGB in place of wavelengths, as renderers without spectra compute
+    Bands,
 }
 
 /// Arguments of `info`.

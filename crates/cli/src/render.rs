@@ -69,6 +69,7 @@ fn prepare(arguments: &RenderArguments) -> Result<Job> {
         wavelengths: arguments.wavelengths.map(|w| match w {
             WavelengthArgument::Hero => "hero",
             WavelengthArgument::Single => "single",
+            WavelengthArgument::Bands => "bands",
         }),
     };
     let LoadedScene { document, mut scene, .. } = load(&arguments.scene, &overrides, arguments.quiet)?;

@@ -133,7 +133,7 @@ impl<'a> BuildContext<'a> {
                     SpectrumRole::Illuminant => space.rgb_illuminant(&mut self.spectra, rgb),
                 })
             }
-            Value::Blackbody(kelvin) => Some(Spectrum::Blackbody { kelvin: *kelvin.first()?, scale: 1.0 }),
+            Value::Blackbody(kelvin) => Some(Spectrum::blackbody(*kelvin.first()?)),
             Value::SpectrumNames(names) => {
                 let name = names.first()?.clone();
                 self.named_spectrum(&name, parameter.span)

@@ -7,13 +7,13 @@
 use std::sync::OnceLock;
 
 use crate::cie::{CIE_Y_INTEGRAL, integrate_1nm};
-use crate::matrix::{Matrix3, invert, solve, transform};
+use crate::matrix::{Matrix3, invert, multiply, solve, transform};
 use crate::named::named_spectrum;
 use crate::tables::{dense_nm, piecewise_linear};
 use crate::uplift::Uplift;
 use crate::uplift_table::uplift_srgb;
-use crate::xyz::xyz_of;
-use crate::{LAMBDA_MIN_NM, N_DENSE, SigmoidPolynomial, Spectrum, SpectrumTables, Xyz};
+use crate::xyz::{white_balance_f64, xyz_of};
+use crate::{Bands, LAMBDA_MIN_NM, N_DENSE, SigmoidPolynomial, Spectrum, SpectrumTables, Xyz};
 
 /// The RGB colour spaces that scene files may name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -68,6 +68,16 @@ pub struct ColorSpace {
     pub illuminant: Vec<f32>,
     /// Fit of reflectances under the illuminant.
     uplift: Uplift,
+    to_srgb: ToSrgb,
+}
+
+/// Matrices from linear RGB of a space to that of sRGB.
+#[derive(Debug)]
+struct ToSrgb {
+    /// By colour.
+    light: [[f32; 3]; 3],
+    /// By appearance: the white of the space becomes the white of sRGB.
+    reflectance: [[f32; 3]; 3],
 }
 
 impl ColorSpace {
@@ -138,17 +148,46 @@ impl ColorSpace {
         (scale, self.uplift(shape))
     }
 
+    /// Linear RGB of light by band.
+    #[inline]
+    #[must_use]
+    pub fn light_bands(&self, rgb: [f32; 3]) -> Bands {
+        Bands::from_rgb(apply(&self.to_srgb.light, rgb))
+    }
+
+    /// Linear RGB of a reflectance or another property of matter by band; grey stays grey whatever the white of the
+    /// space.
+    #[inline]
+    #[must_use]
+    pub fn reflectance_bands(&self, rgb: [f32; 3]) -> Bands {
+        if rgb[0] == rgb[1] && rgb[1] == rgb[2] {
+            return Bands::from_rgb(rgb);
+        }
+        Bands::from_rgb(apply(&self.to_srgb.reflectance, rgb))
+    }
+
+    /// [`Self::reflectance_bands`], limited to 1.
+    #[inline]
+    #[must_use]
+    pub fn albedo_bands(&self, rgb: [f32; 3]) -> Bands {
+        Bands::from_rgb(self.reflectance_bands(rgb.map(|c| c.clamp(0.0, 1.0))).rgb().map(|c| c.min(1.0)))
+    }
+
     /// The spectrum of a reflectance with this linear RGB, limited to [0, 1].
     #[must_use]
     pub fn rgb_albedo(&self, rgb: [f32; 3]) -> Spectrum {
-        Spectrum::Albedo(self.fit_albedo(rgb))
+        Spectrum::Albedo { polynomial: self.fit_albedo(rgb), bands: self.albedo_bands(rgb) }
     }
 
     /// The spectrum of a non-negative quantity without upper limit with this linear RGB.
     #[must_use]
     pub fn rgb_unbounded(&self, rgb: [f32; 3]) -> Spectrum {
         let (scale, shape) = split_scale(rgb);
-        Spectrum::Unbounded { scale, polynomial: self.fit_albedo(shape) }
+        Spectrum::Unbounded {
+            scale,
+            polynomial: self.fit_albedo(shape),
+            bands: self.reflectance_bands(shape),
+        }
     }
 
     /// The spectrum of light with this linear RGB: equal components give a multiple of the illuminant of the space.
@@ -159,6 +198,7 @@ impl ColorSpace {
             scale,
             polynomial: self.fit_albedo(shape),
             table: tables.illuminant(self.name),
+            bands: self.light_bands(shape),
         }
     }
 
@@ -180,7 +220,26 @@ impl ColorSpace {
             primaries_xy: primaries.map(|xy| xy.map(|v| v as f32)),
             white_xy: Xyz::from(white.map(|v| v as f32)).chromaticity(),
             uplift: Uplift::new(&illuminant, &rgb_from_xyz),
+            to_srgb: ToSrgb::new(name, &xyz_from_rgb),
             illuminant,
+        }
+    }
+}
+
+impl ToSrgb {
+    /// Of the space of that name with that matrix from RGB to XYZ.
+    fn new(name: ColorSpaceName, xyz_from_rgb: &Matrix3) -> Self {
+        if name == ColorSpaceName::Srgb {
+            let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+            return Self { light: identity, reflectance: identity };
+        }
+        let srgb = ColorSpace::get(ColorSpaceName::Srgb);
+        let srgb_from_xyz: Matrix3 = srgb.rgb_from_xyz.map(|row| row.map(f64::from));
+        let white = Xyz::from(transform(xyz_from_rgb, [1.0; 3]).map(|v| v as f32)).chromaticity();
+        let adaptation = white_balance_f64(white.map(f64::from), srgb.white_xy.map(f64::from));
+        Self {
+            light: narrow(&multiply(&srgb_from_xyz, xyz_from_rgb)),
+            reflectance: narrow(&multiply(&srgb_from_xyz, &multiply(&adaptation, xyz_from_rgb))),
         }
     }
 }

@@ -15,6 +15,7 @@ pub const N_LAMBDA: usize = 4;
 /// Number of entries of a table with one value per nanometre from [`LAMBDA_MIN_NM`] to [`LAMBDA_MAX_NM`].
 pub const N_DENSE: usize = 471;
 
+mod bands;
 mod sampled;
 mod wavelengths;
 
@@ -39,6 +40,7 @@ mod sensor;
 #[cfg(test)]
 mod tests;
 
+pub use bands::Bands;
 pub use color_space::{ColorSpace, ColorSpaceName};
 pub use daylight::daylight;
 pub use named::{NamedSpectrum, known_but_missing, named_spectrum, named_spectrum_names};

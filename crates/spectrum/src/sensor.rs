@@ -3,9 +3,10 @@
 //! The sensor of the CIE 1931 observer: X = r · mean over wavelengths of L(λ) x̄(λ) / pdf(λ), likewise Y and Z, an
 //! estimate of r ∫ L x̄ dλ. The imaging ratio r = exposure time × ISO / 100 stands for the exposure. XYZ is not divided by
 //! ∫ ȳ dλ, because lights are divided by ∫ s ȳ dλ ([`crate::spectrum_to_photometric`]): a light with Y = 1 gives a film
-//! value of 1. White balance maps the white of daylight of a temperature to the white of the output space.
+//! value of 1. For the same reason the bands of a path ([`crate::Bands`]) are multiplied by ∫ ȳ dλ: they are linear sRGB of
+//! light divided by it. White balance maps the white of daylight of a temperature to the white of the output space.
 
-use crate::cie::color_matching;
+use crate::cie::{CIE_Y_INTEGRAL, color_matching};
 use crate::matrix::{Matrix3, multiply, transform};
 use crate::xyz::white_balance_f64;
 use crate::{
@@ -51,6 +52,8 @@ pub struct Sensor {
     settings: SensorSettings,
     /// Response of R, G, B of the output space, and of Y before white balance, at every nm.
     response: Vec<[f32; 4]>,
+    /// The same of the bands red, green and blue.
+    band_response: [[f32; 4]; 3],
 }
 
 impl Sensor {
@@ -67,15 +70,19 @@ impl Sensor {
             None => rgb_from_xyz,
         };
         let ratio = f64::from(settings.imaging_ratio());
+        let respond = |xyz: [f64; 3]| {
+            let [r, g, b] = transform(&rgb_from_sensor, xyz);
+            [r, g, b, xyz[1]].map(|v| (v * ratio) as f32)
+        };
         let observer = color_matching();
         let response = (0..N_DENSE)
-            .map(|i| {
-                let xyz = [observer.x_bar[i], observer.y_bar[i], observer.z_bar[i]].map(f64::from);
-                let [r, g, b] = transform(&rgb_from_sensor, xyz);
-                [r, g, b, xyz[1]].map(|v| (v * ratio) as f32)
-            })
+            .map(|i| respond([observer.x_bar[i], observer.y_bar[i], observer.z_bar[i]].map(f64::from)))
             .collect();
-        Self { settings: *settings, response }
+        let srgb = ColorSpace::get(ColorSpaceName::Srgb);
+        let band_response = std::array::from_fn(|band| {
+            respond(srgb.xyz_from_rgb.map(|row| f64::from(row[band]) * f64::from(CIE_Y_INTEGRAL)))
+        });
+        Self { settings: *settings, response, band_response }
     }
 
     /// What the sensor was made from.
@@ -105,9 +112,12 @@ impl Sensor {
         ColorSpace::get(self.settings.color_space).to_xyz(self.sensor_rgb(l, wavelengths))
     }
 
-    /// Mean of l × response / pdf.
+    /// Mean of l × response / pdf, or the sum over bands.
     #[inline]
     fn respond(&self, l: Sampled, wavelengths: &Wavelengths) -> [f32; 4] {
+        if let Some(rgb) = wavelengths.estimate_bands(l) {
+            return std::array::from_fn(|c| (0..3).map(|band| rgb[band] * self.band_response[band][c]).sum());
+        }
         let weight = l.safe_div(wavelengths.pdf() * N_LAMBDA as f32).to_array();
         let mut sum = [0.0; 4];
         for (w, nm) in weight.into_iter().zip(wavelengths.lambda_nm()) {
@@ -128,6 +138,6 @@ fn daylight_xy(kelvin: f32) -> [f32; 2] {
     let mut tables = SpectrumTables::new();
     let values = daylight(kelvin);
     let table = tables.add_dense(|nm| values[(nm - LAMBDA_MIN_NM) as usize]);
-    let spectrum = crate::Spectrum::Table { table, scale: 1.0 };
+    let spectrum = crate::Spectrum::table(table, &tables);
     spectrum_to_xyz(&spectrum, &tables).chromaticity()
 }

@@ -41,7 +41,7 @@ impl SigmoidPolynomial {
         sigmoid((c0 * nm + c1) * nm + c2)
     }
 
-    /// Reflectance at each wavelength of a path, in [0, 1].
+    /// Reflectance at each wavelength of a path, in [0, 1]; for bands at the wavelengths that stand for them.
     #[inline]
     #[must_use]
     pub fn sample(&self, wavelengths: &Wavelengths) -> Sampled {

@@ -1,12 +1,14 @@
 //! A function of wavelength in one of a few forms.
 //!
+//! Each form also knows its value in the three bands of [`Bands`], for paths that carry bands instead of wavelengths.
+//!
 //! To add a form: a variant here, a line in each `match`. Variants with many values keep them in [`SpectrumTables`] and
 //! hold an id, so that a spectrum is small and is copied freely.
 
 use crate::cie::{self, CIE_Y_INTEGRAL};
 use crate::{
-    LAMBDA_MAX_NM, LAMBDA_MIN_NM, Sampled, SigmoidPolynomial, SpectrumTables, TableId, Wavelengths, Xyz,
-    blackbody,
+    Bands, LAMBDA_MAX_NM, LAMBDA_MIN_NM, Sampled, SigmoidPolynomial, SpectrumTables, TableId, Wavelengths,
+    Xyz, blackbody,
 };
 
 /// A function of wavelength: a reflectance, an index of refraction, a coefficient per metre, or the relative or absolute
@@ -16,13 +18,20 @@ pub enum Spectrum {
     /// The same value at every wavelength.
     Constant(f32),
     /// A smooth reflectance in [0, 1] of a given RGB.
-    Albedo(SigmoidPolynomial),
+    Albedo {
+        /// Reflectance by wavelength.
+        polynomial: SigmoidPolynomial,
+        /// Reflectance by band.
+        bands: Bands,
+    },
     /// A smooth non-negative function of a given RGB: `scale` × polynomial.
     Unbounded {
         /// Factor, about twice the largest component of the RGB.
         scale: f32,
         /// Shape, in [0, 1].
         polynomial: SigmoidPolynomial,
+        /// The values by band at `scale` 1.
+        bands: Bands,
     },
     /// Light of a given RGB: `scale` × polynomial × the illuminant of the colour space.
     Illuminant {
@@ -32,6 +41,8 @@ pub enum Spectrum {
         polynomial: SigmoidPolynomial,
         /// The illuminant, white of the colour space.
         table: TableId,
+        /// The light by band at `scale` 1.
+        bands: Bands,
     },
     /// `scale` × a table.
     Table {
@@ -39,6 +50,8 @@ pub enum Spectrum {
         table: TableId,
         /// Factor.
         scale: f32,
+        /// The values by band at `scale` 1.
+        bands: Bands,
     },
     /// `scale` × the radiance of a black body, which is 1 at its peak, wherever the peak lies.
     Blackbody {
@@ -46,23 +59,79 @@ pub enum Spectrum {
         kelvin: f32,
         /// Factor.
         scale: f32,
+        /// The light by band at `scale` 1.
+        bands: Bands,
     },
 }
 
 impl Spectrum {
-    /// Values at the wavelengths of a path.
+    /// The values of a table, by band those of a reflectance or an index; see [`Self::as_light`].
+    #[must_use]
+    pub fn table(table: TableId, tables: &SpectrumTables) -> Self {
+        Self::Table { table, scale: 1.0, bands: Bands::of_reflectance(|nm| tables.at(table, nm)) }
+    }
+
+    /// A black body, 1 at its peak, at a temperature in kelvin.
+    #[must_use]
+    pub fn blackbody(kelvin: f32) -> Self {
+        let bands = Bands::of_light(|nm| blackbody::normalized(nm, kelvin));
+        Self::Blackbody { kelvin, scale: 1.0, bands }
+    }
+
+    /// The same function of wavelength, by band the colour of light with this spectrum.
+    ///
+    /// A constant or a table may be a reflectance, whose constant is white, or light, whose constant is that of equal
+    /// energy, a little reddish.
+    #[must_use]
+    pub fn as_light(self, tables: &SpectrumTables) -> Self {
+        match self {
+            Self::Constant(value) => Self::Unbounded {
+                scale: value,
+                polynomial: SigmoidPolynomial::constant(1.0),
+                bands: Bands::of_light(|_| 1.0),
+            },
+            Self::Table { table, scale, .. } => {
+                Self::Table { table, scale, bands: Bands::of_light(|nm| tables.at(table, nm)) }
+            }
+            Self::Albedo { polynomial, .. } => {
+                Self::Unbounded { scale: 1.0, polynomial, bands: Bands::of_light(|nm| polynomial.at(nm)) }
+            }
+            Self::Unbounded { scale, polynomial, .. } => {
+                Self::Unbounded { scale, polynomial, bands: Bands::of_light(|nm| polynomial.at(nm)) }
+            }
+            Self::Illuminant { .. } | Self::Blackbody { .. } => self,
+        }
+    }
+
+    /// Values in the three bands.
+    #[must_use]
+    pub fn bands(&self) -> Bands {
+        match self {
+            Self::Constant(value) => Bands::splat(*value),
+            Self::Albedo { bands, .. } => *bands,
+            Self::Unbounded { scale, bands, .. }
+            | Self::Illuminant { scale, bands, .. }
+            | Self::Table { scale, bands, .. }
+            | Self::Blackbody { scale, bands, .. } => bands.scaled(*scale),
+        }
+    }
+
+    /// Values at the wavelengths of a path, or in its bands.
     #[inline]
     #[must_use]
     pub fn sample(&self, tables: &SpectrumTables, wavelengths: &Wavelengths) -> Sampled {
+        if wavelengths.is_bands() {
+            return wavelengths.of_bands(self.bands());
+        }
         match self {
             Self::Constant(value) => Sampled::splat(*value),
-            Self::Albedo(polynomial) => polynomial.sample(wavelengths),
-            Self::Unbounded { scale, polynomial } => polynomial.sample(wavelengths) * *scale,
-            Self::Illuminant { scale, polynomial, table } => {
+            Self::Albedo { polynomial, .. } => polynomial.sample(wavelengths),
+            Self::Unbounded { scale, polynomial, .. } => polynomial.sample(wavelengths) * *scale,
+            Self::Illuminant { scale, polynomial, table, .. } => {
                 polynomial.sample(wavelengths) * tables.sample(*table, wavelengths) * *scale
             }
-            Self::Table { table, scale } => tables.sample(*table, wavelengths) * *scale,
-            Self::Blackbody { kelvin, scale } => {
+            Self::Table { table, scale, .. } => tables.sample(*table, wavelengths) * *scale,
+            Self::Blackbody { kelvin, scale, .. } => {
                 let values = wavelengths.lambda_nm().map(|nm| scale * blackbody::normalized(nm, *kelvin));
                 Sampled::from_array(values)
             }
@@ -74,13 +143,13 @@ impl Spectrum {
     pub fn at(&self, tables: &SpectrumTables, nm: f32) -> f32 {
         match self {
             Self::Constant(value) => *value,
-            Self::Albedo(polynomial) => polynomial.at(nm),
-            Self::Unbounded { scale, polynomial } => scale * polynomial.at(nm),
-            Self::Illuminant { scale, polynomial, table } => {
+            Self::Albedo { polynomial, .. } => polynomial.at(nm),
+            Self::Unbounded { scale, polynomial, .. } => scale * polynomial.at(nm),
+            Self::Illuminant { scale, polynomial, table, .. } => {
                 scale * polynomial.at(nm) * tables.at(*table, nm)
             }
-            Self::Table { table, scale } => scale * tables.at(*table, nm),
-            Self::Blackbody { kelvin, scale } => scale * blackbody::normalized(nm, *kelvin),
+            Self::Table { table, scale, .. } => scale * tables.at(*table, nm),
+            Self::Blackbody { kelvin, scale, .. } => scale * blackbody::normalized(nm, *kelvin),
         }
     }
 
@@ -89,13 +158,13 @@ impl Spectrum {
     pub fn max_value(&self, tables: &SpectrumTables) -> f32 {
         match self {
             Self::Constant(value) => *value,
-            Self::Albedo(polynomial) => polynomial.max_value(),
-            Self::Unbounded { scale, polynomial } => scale * polynomial.max_value(),
-            Self::Illuminant { scale, polynomial, table } => {
+            Self::Albedo { polynomial, .. } => polynomial.max_value(),
+            Self::Unbounded { scale, polynomial, .. } => scale * polynomial.max_value(),
+            Self::Illuminant { scale, polynomial, table, .. } => {
                 scale * polynomial.max_value() * tables.max_value(*table)
             }
-            Self::Table { table, scale } => scale * tables.max_value(*table),
-            Self::Blackbody { kelvin, scale } => {
+            Self::Table { table, scale, .. } => scale * tables.max_value(*table),
+            Self::Blackbody { kelvin, scale, .. } => {
                 let peak = blackbody::wien_peak_nm(*kelvin).clamp(LAMBDA_MIN_NM, LAMBDA_MAX_NM);
                 scale * blackbody::normalized(peak, *kelvin)
             }
@@ -108,7 +177,7 @@ impl Spectrum {
     pub fn is_constant(&self) -> bool {
         match self {
             Self::Constant(_) => true,
-            Self::Albedo(polynomial) | Self::Unbounded { polynomial, .. } => polynomial.is_constant(),
+            Self::Albedo { polynomial, .. } | Self::Unbounded { polynomial, .. } => polynomial.is_constant(),
             Self::Illuminant { .. } | Self::Table { .. } | Self::Blackbody { .. } => false,
         }
     }
@@ -124,13 +193,17 @@ impl Spectrum {
     pub fn scaled(self, factor: f32) -> Self {
         match self {
             Self::Constant(value) => Self::Constant(value * factor),
-            Self::Albedo(polynomial) => Self::Unbounded { scale: factor, polynomial },
-            Self::Unbounded { scale, polynomial } => Self::Unbounded { scale: scale * factor, polynomial },
-            Self::Illuminant { scale, polynomial, table } => {
-                Self::Illuminant { scale: scale * factor, polynomial, table }
+            Self::Albedo { polynomial, bands } => Self::Unbounded { scale: factor, polynomial, bands },
+            Self::Unbounded { scale, polynomial, bands } => {
+                Self::Unbounded { scale: scale * factor, polynomial, bands }
             }
-            Self::Table { table, scale } => Self::Table { table, scale: scale * factor },
-            Self::Blackbody { kelvin, scale } => Self::Blackbody { kelvin, scale: scale * factor },
+            Self::Illuminant { scale, polynomial, table, bands } => {
+                Self::Illuminant { scale: scale * factor, polynomial, table, bands }
+            }
+            Self::Table { table, scale, bands } => Self::Table { table, scale: scale * factor, bands },
+            Self::Blackbody { kelvin, scale, bands } => {
+                Self::Blackbody { kelvin, scale: scale * factor, bands }
+            }
         }
     }
 }
@@ -148,9 +221,9 @@ pub fn spectrum_to_xyz(spectrum: &Spectrum, tables: &SpectrumTables) -> Xyz {
 /// For light given as RGB only the illuminant counts, not the RGB: an RGB of 2 is then twice as bright as one of 1.
 #[must_use]
 pub fn spectrum_to_photometric(spectrum: &Spectrum, tables: &SpectrumTables) -> f32 {
-    let s = match spectrum {
-        Spectrum::Illuminant { table, .. } => Spectrum::Table { table: *table, scale: 1.0 },
-        other => *other,
+    let at = |nm: f32| match spectrum {
+        Spectrum::Illuminant { table, .. } => tables.at(*table, nm),
+        other => other.at(tables, nm),
     };
-    cie::integrate_1nm(|nm| s.at(tables, nm))[1]
+    cie::integrate_1nm(at)[1]
 }

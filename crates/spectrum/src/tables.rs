@@ -69,7 +69,7 @@ impl SpectrumTables {
         } else {
             self.add_dense(|nm| piecewise_linear(&samples, nm))
         };
-        Spectrum::Table { table, scale: 1.0 }
+        Spectrum::table(table, self)
     }
 
     /// Adds a measured spectrum of [`named_spectrum`] once; `None` if there is none of that name.
@@ -117,7 +117,7 @@ impl SpectrumTables {
         dense_lookup(self.table(id), nm)
     }
 
-    /// Values of a table at the wavelengths of a path.
+    /// Values of a table at the wavelengths of a path; for bands at the wavelengths that stand for them.
     #[inline]
     #[must_use]
     pub fn sample(&self, id: TableId, wavelengths: &Wavelengths) -> Sampled {

@@ -1,5 +1,6 @@
 //! Tests of the crate by subject, and what they share.
 
+mod bands;
 mod color;
 mod emission;
 mod named;

@@ -107,7 +107,7 @@ impl PathSettings {
             kind: "string",
             default: "hero",
             unit: "",
-            doc: "wavelengths of a path: hero (four) or single",
+            doc: "wavelengths of a path: hero (four), single, or bands (linear sRGB, as renderers without spectra)",
         },
     ];
 
@@ -123,7 +123,11 @@ impl PathSettings {
             ("scattering", LightStrategy::Scattering),
         ];
         let lights = p.choice("lights", "both", &strategies);
-        let modes = [("hero", WavelengthMode::Hero), ("single", WavelengthMode::Single)];
+        let modes = [
+            ("hero", WavelengthMode::Hero),
+            ("single", WavelengthMode::Single),
+            ("bands", WavelengthMode::Bands),
+        ];
         let wavelengths = p.choice("wavelengths", "hero", &modes);
         // Read where the scene is built.
         p.ignore("lightsampler");

@@ -70,7 +70,7 @@ pub(super) fn build_film(document: &Document, context: &mut BuildContext<'_>) ->
     let mut p = Parameters::new(entity, context);
     let resolution = read_resolution(&mut p);
     let crop = read_crop(&mut p, resolution);
-    let kind = read_kind(&mut p);
+    let kind = read_kind(&mut p, document);
     let sensor = read_sensor(&mut p, document);
     let max_component = p.float("maxcomponentvalue", f32::INFINITY);
     let filename = p.string("filename", "pbrt.exr");
@@ -136,19 +136,35 @@ fn wrong_crop(p: &mut Parameters<'_, '_>, name: &'static str, full: PixelBounds)
     full
 }
 
-fn read_kind(p: &mut Parameters<'_, '_>) -> FilmKind {
+fn read_kind(p: &mut Parameters<'_, '_>, document: &Document) -> FilmKind {
     match p.entity().type_name.as_str() {
         "rgb" => FilmKind::Rgb,
         "gbuffer" => {
             let choices = [("camera", AovSpace::Camera), ("world", AovSpace::World)];
             FilmKind::GBuffer(p.choice("coordinatesystem", "camera", &choices))
         }
-        "spectral" => read_spectral(p),
+        "spectral" => {
+            warn_of_bands(p, document);
+            read_spectral(p)
+        }
         unknown => {
             let span = p.span();
             p.diagnostics().unknown_name(span, "film", unknown, known_names(FILMS));
             FilmKind::Rgb
         }
+    }
+}
+
+/// Warns if the integrator computes with red, green and blue, which leaves a spectral film black but for its colour.
+fn warn_of_bands(p: &mut Parameters<'_, '_>, document: &Document) {
+    let choice = document.integrator.iter().flat_map(|entity| &entity.parameters);
+    let is_bands = |value: &Value| matches!(value, Value::Strings(words) if words[..] == ["bands"]);
+    if choice.filter(|parameter| parameter.name == "wavelengths").any(|parameter| is_bands(&parameter.value))
+    {
+        let span = p.span();
+        let message = "the integrator's wavelengths are \"bands\", which tell nothing of the spectrum: \
+                       the film's spectral channels stay black";
+        p.diagnostics().warning(span, message);
     }
 }
 

@@ -128,13 +128,21 @@ impl FilmSettings {
     /// The colour of a reflectance under the white of the output colour space, without exposure.
     #[must_use]
     pub fn white_rgb(&self, reflectance: Sampled, lambda: &Wavelengths) -> [f32; 3] {
-        let illuminant = &ColorSpace::get(self.color_space).illuminant;
-        let white = lambda.lambda_nm().map(|nm| {
-            let index = (nm - LAMBDA_MIN_NM).round().clamp(0.0, (N_DENSE - 1) as f32) as usize;
-            illuminant[index] / CIE_Y_INTEGRAL
-        });
-        let rgb = self.sensor.sensor_rgb(reflectance * Sampled::from_array(white), lambda);
+        let white = self.white(lambda);
+        let rgb = self.sensor.sensor_rgb(reflectance * white, lambda);
         rgb.map(|c| c / self.sensor.settings().imaging_ratio())
+    }
+
+    /// White light of the output colour space, of luminance 1.
+    fn white(&self, lambda: &Wavelengths) -> Sampled {
+        let space = ColorSpace::get(self.color_space);
+        if lambda.is_bands() {
+            return lambda.of_bands(space.light_bands([1.0 / CIE_Y_INTEGRAL; 3]));
+        }
+        Sampled::from_array(lambda.lambda_nm().map(|nm| {
+            let index = (nm - LAMBDA_MIN_NM).round().clamp(0.0, (N_DENSE - 1) as f32) as usize;
+            space.illuminant[index] / CIE_Y_INTEGRAL
+        }))
     }
 
     /// Name of a spectral channel by the spectral EXR layout of Fichet, Pacanowski and Wilkie 2021: `S0.` and the
@@ -149,7 +157,8 @@ impl FilmSettings {
     }
 
     /// Adds a sample's radiance to the bands of its wavelengths: the expectation of a band's sum is the mean of the
-    /// spectral radiance over the band.
+    /// spectral radiance over the band. Paths that carry red, green and blue tell nothing of the spectrum: they leave
+    /// these bands black.
     pub(super) fn add_to_buckets(
         &self,
         radiance: Sampled,
@@ -160,6 +169,9 @@ impl FilmSettings {
         let FilmKind::Spectral { n_buckets, min_nm, max_nm } = self.kind else {
             return;
         };
+        if lambda.is_bands() {
+            return;
+        }
         let width = (max_nm - min_nm) / n_buckets as f32;
         let (nm, pdf) = (lambda.lambda_nm(), lambda.pdf());
         for i in 0..N_LAMBDA {

@@ -239,7 +239,8 @@ fn read_scale(p: &mut Parameters) -> (f32, LightUnits) {
 /// The white of the colour space that was current at the light.
 fn default_illuminant(p: &mut Parameters) -> Spectrum {
     let space = p.entity().parameters.first().map_or(ColorSpaceName::Srgb, |parameter| parameter.color_space);
-    Spectrum::Table { table: p.context.spectra.illuminant(space), scale: 1.0 }
+    let table = p.context.spectra.illuminant(space);
+    Spectrum::table(table, &p.context.spectra)
 }
 
 /// The size of a pictured emission.
@@ -267,7 +268,7 @@ impl PictureScale {
         extent: f32,
     ) -> f32 {
         let spectra = &p.context.spectra;
-        let unit = unit_factor(picture.white_spectrum(), self.units, spectra);
+        let unit = unit_factor(picture.white_spectrum(spectra), self.units, spectra);
         let flux = LightPower::of(&mean, spectra) * (unit * f64::from(extent));
         unit as f32 * self.scale * super::emission::factor_for(target, flux, self.units)
     }
@@ -296,8 +297,8 @@ impl Picture {
         Self { width, height, rgb, space, white: spectra.illuminant(space) }
     }
 
-    fn white_spectrum(&self) -> Spectrum {
-        Spectrum::Table { table: self.white, scale: 1.0 }
+    fn white_spectrum(&self, spectra: &SpectrumTables) -> Spectrum {
+        Spectrum::table(self.white, spectra)
     }
 
     /// Irradiance on a plane that faces +z under an equal-area picture, in terms of the picture's illuminant.

@@ -108,7 +108,8 @@ impl LightPower {
 /// The emitted spectrum in internal units of a light with the spectrum and `scale` of a scene file.
 #[must_use]
 pub fn emitted(spectrum: Spectrum, scale: f32, units: LightUnits, tables: &SpectrumTables) -> Spectrum {
-    spectrum.scaled((unit_factor(spectrum, units, tables) * f64::from(scale)) as f32)
+    let factor = (unit_factor(spectrum, units, tables) * f64::from(scale)) as f32;
+    spectrum.as_light(tables).scaled(factor)
 }
 
 /// What turns a spectrum of a scene file into internal units; 0 for one that nobody can see.
@@ -117,12 +118,12 @@ pub fn unit_factor(spectrum: Spectrum, units: LightUnits, tables: &SpectrumTable
     let reciprocal = |x: f64| if x > 0.0 { 1.0 / x } else { 0.0 };
     match (units, spectrum) {
         (LightUnits::Photometric, _) => reciprocal(f64::from(spectrum_to_photometric(&spectrum, tables))),
-        (LightUnits::Radiometric, Spectrum::Blackbody { kelvin, scale }) => {
+        (LightUnits::Radiometric, Spectrum::Blackbody { kelvin, scale, .. }) => {
             let peak = blackbody::radiance(blackbody::wien_peak_nm(kelvin), kelvin);
             K_M * f64::from(peak) * reciprocal(f64::from(scale))
         }
         (LightUnits::Radiometric, Spectrum::Illuminant { table, .. }) => {
-            let white = LightPower::of(&Spectrum::Table { table, scale: 1.0 }, tables);
+            let white = LightPower::of(&Spectrum::table(table, tables), tables);
             reciprocal(white.watts)
         }
         (LightUnits::Radiometric, _) => K_M,

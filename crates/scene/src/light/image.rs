@@ -2,11 +2,13 @@
 //!
 //! A texel is white light times a smooth spectrum of at most 1 (Jakob and Hanika 2019, "A Low-Dimensional Function
 //! Space for Efficient Spectral Upsampling"), times a factor that carries brightness, as pbrt-v4's
-//! `RGBIlluminantSpectrum`. Stored are the factor and the three coefficients, 16 bytes.
+//! `RGBIlluminantSpectrum`. Stored are the factor and the three coefficients, 16 bytes, and the colour for paths that
+//! carry bands, 6 bytes.
 
 use etendue_math::Point2;
 use etendue_spectrum::{
-    ColorSpace, ColorSpaceName, Sampled, SigmoidPolynomial, Spectrum, SpectrumTables, TableId, Wavelengths,
+    Bands, ColorSpace, ColorSpaceName, Sampled, SigmoidPolynomial, Spectrum, SpectrumTables, TableId,
+    Wavelengths,
 };
 use rayon::prelude::*;
 
@@ -21,12 +23,18 @@ struct Texel {
     polynomial: SigmoidPolynomial,
 }
 
+/// A texel over its factor by band, in 32768ths: below 2, since the largest component of the colour is 1/2 and
+/// conversion to the primaries of sRGB makes it less than four times as large.
+type PackedBands = [u16; 3];
+const PACKED_ONE: f32 = 32_768.0;
+
 /// A picture whose texels are spectra of light, rows from the top.
 #[derive(Clone, Debug)]
 pub struct LightImage {
     width: usize,
     height: usize,
     texels: Vec<Texel>,
+    bands: Vec<PackedBands>,
     white: TableId,
     /// Spectrum of the average texel.
     mean: Spectrum,
@@ -43,9 +51,15 @@ impl LightImage {
         assert!(width > 0 && height > 0, "a picture has at least one texel");
         assert_eq!(rgb.len(), width * height, "one colour per texel");
         let color_space = ColorSpace::get(space);
-        let texels = rgb.par_iter().map(|rgb| lift(*rgb, color_space)).collect();
+        let (texels, bands) = rgb
+            .par_iter()
+            .map(|rgb| {
+                let texel = lift(*rgb, color_space);
+                (texel, pack(*rgb, texel.scale, color_space))
+            })
+            .unzip();
         let mean = weighted_mean(rgb.iter().map(|c| (*c, 1.0)), space, white);
-        Self { width, height, texels, white, mean }
+        Self { width, height, texels, bands, white, mean }
     }
 
     /// Texels in a row.
@@ -95,22 +109,37 @@ impl LightImage {
     }
 
     fn texel(&self, x: usize, y: usize, tables: &SpectrumTables, lambda: &Wavelengths) -> Sampled {
-        let texel = &self.texels[y * self.width + x];
+        let index = y * self.width + x;
+        let texel = &self.texels[index];
         if texel.scale == 0.0 {
             return Sampled::ZERO;
         }
-        spectrum(texel, self.white).sample(tables, lambda)
+        if lambda.is_bands() {
+            return lambda.of_bands(unpack(self.bands[index])) * texel.scale;
+        }
+        texel.polynomial.sample(lambda) * tables.sample(self.white, lambda) * texel.scale
     }
-}
-
-fn spectrum(texel: &Texel, white: TableId) -> Spectrum {
-    Spectrum::Illuminant { scale: texel.scale, polynomial: texel.polynomial, table: white }
 }
 
 /// Brightness and smooth spectrum of a colour.
 fn lift(rgb: [f32; 3], space: &ColorSpace) -> Texel {
     let (scale, polynomial) = space.uplift_unbounded(rgb.map(|c| c.max(0.0)));
     Texel { scale, polynomial }
+}
+
+/// A colour over the factor of its texel by band.
+fn pack(rgb: [f32; 3], scale: f32, space: &ColorSpace) -> PackedBands {
+    if scale == 0.0 {
+        return [0; 3];
+    }
+    let bands = space.light_bands(rgb.map(|c| c.max(0.0) / scale));
+    bands.rgb().map(|c| (c * PACKED_ONE).round().min(f32::from(u16::MAX)) as u16)
+}
+
+/// Reverses [`pack`].
+#[inline]
+fn unpack(packed: PackedBands) -> Bands {
+    Bands::from_rgb(packed.map(|c| f32::from(c) / PACKED_ONE))
 }
 
 /// Mean of colours with weights, negative values as 0.
@@ -133,7 +162,10 @@ pub(super) fn weighted_mean(
     space: ColorSpaceName,
     white: TableId,
 ) -> Spectrum {
-    spectrum(&lift(mean_rgb(pixels), ColorSpace::get(space)), white)
+    let (rgb, space) = (mean_rgb(pixels), ColorSpace::get(space));
+    let Texel { scale, polynomial } = lift(rgb, space);
+    let bands = if scale > 0.0 { space.light_bands(rgb.map(|c| c / scale)) } else { Bands::splat(0.0) };
+    Spectrum::Illuminant { scale, polynomial, table: white, bands }
 }
 
 /// What a texel counts in a sampling distribution: the average of its channels.

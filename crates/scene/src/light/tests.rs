@@ -1,6 +1,7 @@
 //! Tests of lights. Significance is 1e-5 each, about 1e-3 over the tests of this folder.
 
 mod area;
+mod bands;
 mod build;
 mod fields;
 mod sampler;

@@ -61,7 +61,7 @@ impl SpectrumImageTexture {
         ctx: &TextureContext,
         lambda: &Wavelengths,
     ) -> Sampled {
-        self.uplift.spectrum(self.texture.eval_rgb(image, ctx)).sample(tables, lambda)
+        self.uplift.sample(self.texture.eval_rgb(image, ctx), tables, lambda)
     }
 
     /// How its colours are read.

@@ -250,9 +250,7 @@ impl Textures {
             }
             SpectrumTextureNode::Checkerboard(node) => blend(node.a, node.b, node.amount(ctx)),
             SpectrumTextureNode::Dots(node) => eval(node.select(ctx)),
-            SpectrumTextureNode::Marble(node, uplift) => {
-                uplift.spectrum(node.rgb(ctx)).sample(&self.spectra, lambda)
-            }
+            SpectrumTextureNode::Marble(node, uplift) => uplift.sample(node.rgb(ctx), &self.spectra, lambda),
             SpectrumTextureNode::Image(node) => {
                 node.eval(self.image(node.texture.image), &self.spectra, ctx, lambda)
             }

@@ -1,7 +1,8 @@
-//! From the linear colours of a picture to spectra (Jakob and Hanika 2019), by what the texture is used for.
+//! From the linear colours of a picture to spectra (Jakob and Hanika 2019), by what the texture is used for. For paths
+//! that carry bands the colours stay what they are.
 
 use etendue_image::{Chromaticities, Texels};
-use etendue_spectrum::{ColorSpace, ColorSpaceName, Spectrum, SpectrumTables, TableId};
+use etendue_spectrum::{Bands, ColorSpace, ColorSpaceName, Sampled, SpectrumTables, TableId, Wavelengths};
 
 use crate::parameters::SpectrumRole;
 
@@ -43,23 +44,34 @@ impl Uplift {
         Self { role, color_space, illuminant: tables.illuminant(color_space) }
     }
 
-    /// The spectrum of a linear, non-negative colour; reflectances are limited to 1.
+    /// The spectrum of a linear, non-negative colour at the wavelengths of a path; reflectances are limited to 1.
     #[must_use]
-    pub fn spectrum(&self, rgb: [f32; 3]) -> Spectrum {
+    pub fn sample(&self, rgb: [f32; 3], tables: &SpectrumTables, lambda: &Wavelengths) -> Sampled {
         if rgb == [0.0; 3] {
-            return Spectrum::Constant(0.0);
+            return Sampled::ZERO;
         }
         let space = ColorSpace::get(self.color_space);
+        if lambda.is_bands() {
+            return lambda.of_bands(self.bands(space, rgb));
+        }
         match self.role {
-            SpectrumRole::Albedo => Spectrum::Albedo(space.uplift(rgb.map(|c| c.clamp(0.0, 1.0)))),
+            SpectrumRole::Albedo => space.uplift(rgb.map(|c| c.clamp(0.0, 1.0))).sample(lambda),
             SpectrumRole::Unbounded => {
                 let (scale, polynomial) = space.uplift_unbounded(rgb);
-                Spectrum::Unbounded { scale, polynomial }
+                polynomial.sample(lambda) * scale
             }
             SpectrumRole::Illuminant => {
                 let (scale, polynomial) = space.uplift_unbounded(rgb);
-                Spectrum::Illuminant { scale, polynomial, table: self.illuminant }
+                polynomial.sample(lambda) * tables.sample(self.illuminant, lambda) * scale
             }
+        }
+    }
+
+    fn bands(&self, space: &ColorSpace, rgb: [f32; 3]) -> Bands {
+        match self.role {
+            SpectrumRole::Albedo => space.albedo_bands(rgb),
+            SpectrumRole::Unbounded => space.reflectance_bands(rgb),
+            SpectrumRole::Illuminant => space.light_bands(rgb),
         }
     }
 }

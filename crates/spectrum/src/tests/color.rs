@@ -35,7 +35,7 @@ fn the_illuminant_is_white() {
         let space = ColorSpace::get(name);
         let mut tables = SpectrumTables::new();
         let table = tables.illuminant(name);
-        let xyz = spectrum_to_xyz(&Spectrum::Table { table, scale: 1.0 }, &tables);
+        let xyz = spectrum_to_xyz(&Spectrum::table(table, &tables), &tables);
         assert!(distance(space.to_rgb(xyz), [1.0; 3]) < 1e-5, "{name:?}: {:?}", space.to_rgb(xyz));
         assert_near(f64::from(xyz.y), 1.0, 1e-6);
     }

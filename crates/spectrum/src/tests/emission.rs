@@ -73,7 +73,7 @@ fn temperature_gives_the_expected_colour() {
     // 6500 K is nearly white, a candle is orange, a hot star bluish (EMI-3); chromaticities of Planck's locus.
     let tables = SpectrumTables::new();
     let space = ColorSpace::get(ColorSpaceName::Srgb);
-    let xyz = |kelvin: f32| spectrum_to_xyz(&Spectrum::Blackbody { kelvin, scale: 1.0 }, &tables);
+    let xyz = |kelvin: f32| spectrum_to_xyz(&Spectrum::blackbody(kelvin), &tables);
     for (kelvin, expected) in
         [(2000.0, [0.5267, 0.4133]), (4000.0, [0.3805, 0.3768]), (6500.0, [0.3135, 0.3237])]
     {

@@ -75,7 +75,7 @@ fn white_balance_makes_its_daylight_white() {
         let mut tables = SpectrumTables::new();
         let values = daylight(kelvin);
         let table = tables.add_dense(|nm| values[(nm - 360.0) as usize]);
-        let light = Spectrum::Table { table, scale: 1.0 };
+        let light = Spectrum::table(table, &tables);
         let light = light.scaled(1.0 / spectrum_to_photometric(&light, &tables));
         let settings = SensorSettings { white_balance_kelvin: Some(kelvin), ..SensorSettings::default() };
         let rgb = recorded(&Sensor::cie1931(&settings), &light, &tables);

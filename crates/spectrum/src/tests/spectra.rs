@@ -3,8 +3,8 @@
 use super::{assert_near, rng_of};
 use crate::cie::{CIE_Y_INTEGRAL, x_bar, y_bar, z_bar};
 use crate::{
-    ColorSpace, ColorSpaceName, SigmoidPolynomial, Spectrum, SpectrumTables, Wavelengths,
-    spectrum_to_photometric, spectrum_to_xyz,
+    ColorSpace, ColorSpaceName, Spectrum, SpectrumTables, Wavelengths, spectrum_to_photometric,
+    spectrum_to_xyz,
 };
 
 /// One spectrum of each form.
@@ -16,7 +16,7 @@ fn forms(tables: &mut SpectrumTables) -> Vec<Spectrum> {
         space.rgb_unbounded([3.0, 0.2, 7.0]),
         space.rgb_illuminant(tables, [2.0, 1.0, 5.0]),
         tables.add_samples(&[[300.0, 1.0], [500.0, 4.0], [520.0, 2.0], [900.0, 3.0]]),
-        Spectrum::Blackbody { kelvin: 4000.0, scale: 3.0 },
+        Spectrum::blackbody(4000.0).scaled(3.0),
     ]
 }
 
@@ -123,7 +123,7 @@ fn equal_samples_are_a_constant() {
     assert_eq!(tables.add_samples(&[[300.0, 1.5], [900.0, 1.5]]), Spectrum::Constant(1.5));
     assert!(!tables.add_samples(&[[400.0, 1.5], [900.0, 1.5]]).is_constant());
     assert_eq!(tables.add_samples(&[]), Spectrum::Constant(0.0));
-    assert!(Spectrum::Albedo(SigmoidPolynomial::constant(0.5)).is_constant());
+    assert!(ColorSpace::get(ColorSpaceName::Srgb).rgb_albedo([0.5; 3]).is_constant());
 }
 
 #[test]

@@ -24,6 +24,8 @@ pub enum WavelengthMode {
     Hero,
     /// One random wavelength for each path (SPEC SPD-2), to compare with.
     Single,
+    /// Red, green and blue in place of wavelengths (SPEC SPD-4), as renderers without spectra compute.
+    Bands,
 }
 
 impl WavelengthMode {
@@ -31,6 +33,7 @@ impl WavelengthMode {
         match self {
             Self::Hero => Wavelengths::sample_visible(u),
             Self::Single => Wavelengths::sample_single(u),
+            Self::Bands => Wavelengths::bands(u),
         }
     }
 }

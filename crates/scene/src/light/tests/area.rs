@@ -65,7 +65,7 @@ fn irradiance(world: &World, reference: &Reference, n: usize, name: &str) -> Mom
 fn lights_of_meshes_are_small() {
     // A mesh of a hundred thousand emissive triangles is as many lights.
     assert!(size_of::<AreaLight>() <= 16);
-    assert!(size_of::<Light>() <= 64);
+    assert!(size_of::<Light>() <= 72);
 }
 
 #[test]

@@ -195,7 +195,7 @@ fn watts_and_lumens_of_photometric_lights_are_related_by_their_efficacy() {
     // RAD-13: lumens = 683 lm/W times the V-weighted share of the watts.
     let world = World::of(Entity::new("point").with("I", Value::Blackbody(vec![3000.0])));
     let power = world.light().power(&world.context());
-    let spectrum = etendue_spectrum::Spectrum::Blackbody { kelvin: 3000.0, scale: 1.0 };
+    let spectrum = etendue_spectrum::Spectrum::blackbody(3000.0);
     let efficacy = f64::from(photometry::luminous_efficacy(&spectrum, &world.spectra));
     assert_close(power.lumens / power.watts, efficacy, 1e-4);
 }

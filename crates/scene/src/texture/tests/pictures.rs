@@ -206,6 +206,26 @@ fn colours_keep_their_hue() {
     assert!(red > 0.7 && blue < 0.15, "{red} {blue}");
 }
 
+/// Paths that carry bands see the colours of the file, those that no smooth spectrum has too, limited where reflectances
+/// are; at wavelengths the same texture has another value.
+#[test]
+fn bands_see_the_colours_of_the_file() {
+    let mut assets = Assets::default();
+    let color = [1.5, 0.02, 0.0];
+    assets.images.insert("red.exr".to_owned(), Arc::new(Texels::from_fn(1, 1, 3, |_, _, c| color[c])));
+    let entity = Entity::new("imagemap").with("filename", strings("red.exr"));
+    let roles = [SpectrumRole::Albedo, SpectrumRole::Unbounded, SpectrumRole::Illuminant];
+    for (role, expected) in roles.into_iter().zip([[1.0, 0.02, 0.0], color, color]) {
+        let (textures, texture, _) = read_spectrum(&entity, &assets, role);
+        let bands = Wavelengths::bands(0.5);
+        let value = textures.eval_spectrum(texture, &at_uv(0.4, 0.6), &bands);
+        let rgb = bands.estimate_bands(value).expect("a path that carries bands");
+        assert!((0..3).all(|c| (rgb[c] - expected[c]).abs() < 1e-3), "{role:?}: {rgb:?}");
+        let at_wavelengths = textures.eval_spectrum(texture, &at_uv(0.4, 0.6), &lambda());
+        assert!((at_wavelengths - value).map(f32::abs).max_value() > 0.1);
+    }
+}
+
 /// Scaling comes before inversion, and neither makes light negative.
 #[test]
 fn scale_and_invert() {
