@@ -46,34 +46,34 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "NAME[:key=value,...]")]
     pub(crate) integrator: Option<String>,
     /// Samples per pixel
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     pub(crate) spp: Option<u64>,
     /// Stop after this time, such as 30s, 5m or 2h
-    #[arg(long, value_name = "TIME", value_parser = parse_duration)]
+    #[arg(long, value_name = "TIME", value_parser = parse_time_limit)]
     pub(crate) time: Option<Duration>,
     /// Stop once the relative standard error of the image falls below this
-    #[arg(long, value_name = "E", value_parser = parse_positive)]
+    #[arg(long, value_name = "E", value_parser = parse_positive, allow_negative_numbers = true)]
     pub(crate) error: Option<f64>,
     /// Render passes A up to, not including, B; `merge` adds such parts exactly
     #[arg(long, value_name = "A..B", value_parser = parse_range, conflicts_with = "spp")]
     pub(crate) passes: Option<Range<u64>>,
     /// Random seed
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
     /// Number of threads [default: all cores]; it does not change the image
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..1024), allow_negative_numbers = true)]
     pub(crate) threads: Option<u64>,
     /// Resolution in place of the film's
-    #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
+    #[arg(long, value_name = "WxH", value_parser = parse_resolution, allow_hyphen_values = true)]
     pub(crate) resolution: Option<[i32; 2]>,
     /// Part of the image to render, in shares of its size
-    #[arg(long, value_name = "x0,x1,y0,y1", value_parser = parse_crop)]
+    #[arg(long, value_name = "x0,x1,y0,y1", value_parser = parse_crop, allow_hyphen_values = true)]
     pub(crate) crop: Option<[f32; 4]>,
     /// Layer of the paths that an expression selects, such as caustic='LS+DE'; may repeat
     #[arg(long = "lpe", value_name = "NAME=EXPRESSION", value_parser = parse_named)]
     pub(crate) expressions: Vec<(String, String)>,
     /// Layers bounce0, bounce1, ... of light that was scattered that many times, up to N
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..24))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..24), allow_negative_numbers = true)]
     pub(crate) bounces: Option<u64>,
     /// Wavelengths of a path
     #[arg(long, value_enum)]
@@ -268,6 +268,7 @@ pub(crate) enum StudyName {
 fn parse_duration(text: &str) -> Result<Duration, String> {
     let number_end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(number_end);
+    let number: f64 = number.parse().map_err(|_| "a time is a number with a unit, such as 30s".to_owned())?;
     let seconds = match unit {
         "" | "s" => 1.0,
         "ms" => 1e-3,
@@ -275,8 +276,14 @@ fn parse_duration(text: &str) -> Result<Duration, String> {
         "h" => 3600.0,
         _ => return Err(format!("'{unit}' is not a unit of time; use ms, s, m or h")),
     };
-    let number: f64 = number.parse().map_err(|_| "a time is a number with a unit, such as 30s".to_owned())?;
     Duration::try_from_secs_f64(number * seconds).map_err(|error| error.to_string())
+}
+
+fn parse_time_limit(text: &str) -> Result<Duration, String> {
+    match parse_duration(text)? {
+        Duration::ZERO => Err("a time to stop after must be longer than nothing".to_owned()),
+        time => Ok(time),
+    }
 }
 
 fn parse_positive(text: &str) -> Result<f64, String> {
@@ -305,7 +312,9 @@ fn parse_crop(text: &str) -> Result<[f32; 4], String> {
     let numbers: Vec<f32> =
         text.split(',').map(str::parse).collect::<Result<_, _>>().map_err(|_| malformed())?;
     match numbers[..] {
-        [x0, x1, y0, y1] if x0 < x1 && y0 < y1 => Ok([x0, x1, y0, y1]),
+        [x0, x1, y0, y1] if 0.0 <= x0 && x0 < x1 && x1 <= 1.0 && 0.0 <= y0 && y0 < y1 && y1 <= 1.0 => {
+            Ok([x0, x1, y0, y1])
+        }
         _ => Err(malformed()),
     }
 }

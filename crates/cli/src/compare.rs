@@ -1,6 +1,6 @@
 //! `etendue compare`.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use etendue::image::compare::{CompareError, Comparison, DifferenceKind, Pair, Settings, compare};
 use etendue::image::{Image, box_downsample};
@@ -10,9 +10,12 @@ use serde_json::json;
 use crate::args::{CompareArguments, MapArgument};
 use crate::failure::{Failure, Result};
 use crate::list::print;
+use crate::outputs;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &CompareArguments) -> Result<()> {
+    let maps = arguments.output.as_slice();
+    outputs::check_images(maps)?;
     let open = |path| read_image(path).map_err(|error| Failure::Usage(error.to_string()));
     let (mut image, mut reference) = (open(&arguments.image)?, open(&arguments.reference)?);
     scale(&mut reference, arguments.scale_reference);
@@ -21,11 +24,12 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<()> {
         equalize_sizes(&mut image, &mut reference, arguments.clamp);
     }
     let settings = Settings { clamp, flip_exposure_ev: arguments.exposure, ..Settings::default() };
-    let refuse = |error: CompareError| Failure::Usage(error.to_string());
+    let (name, reference_name) = (arguments.image.display(), arguments.reference.display());
+    let refuse = |error: CompareError| Failure::Usage(format!("{name} and {reference_name}: {error}"));
     let result = compare(&image, &reference, &settings).map_err(refuse)?;
-    if let Some(path) = &arguments.output {
+    if !maps.is_empty() {
         let pair = Pair::new(&image, &reference, clamp).map_err(refuse)?;
-        write_map(path, &pair, arguments.map, &settings)?;
+        write_map(maps, &pair, arguments.map, &settings)?;
     }
     if arguments.json {
         print_json(&result)
@@ -49,7 +53,7 @@ fn equalize_sizes(image: &mut Image, reference: &mut Image, clamp: Option<f32>) 
     }
 }
 
-fn write_map(path: &Path, pair: &Pair, map: MapArgument, settings: &Settings) -> Result<()> {
+fn write_map(paths: &[PathBuf], pair: &Pair, map: MapArgument, settings: &Settings) -> Result<()> {
     let kind = match map {
         MapArgument::Flip => DifferenceKind::Flip { pixels_per_degree: settings.pixels_per_degree },
         MapArgument::Absolute => DifferenceKind::Absolute,
@@ -57,7 +61,8 @@ fn write_map(path: &Path, pair: &Pair, map: MapArgument, settings: &Settings) ->
     };
     let map = pair.difference(kind);
     let full_scale = if kind == DifferenceKind::Absolute { map.max() } else { 1.0 };
-    write_image(path, &map.to_false_colors(full_scale)).map_err(|error| Failure::Running(error.to_string()))
+    let picture = map.to_false_colors(full_scale);
+    outputs::write_all(paths, |path| write_image(path, &picture))
 }
 
 /// The numbers of a comparison with their names, which are stable.

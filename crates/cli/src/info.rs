@@ -3,6 +3,8 @@
 use etendue::math::Vector3;
 use etendue::scene::light::Light;
 use etendue::scene::{Scene, Severity};
+use etendue::transport::lpe::PathExpressions;
+use etendue::transport::method_name;
 use serde_json::{Value, json};
 
 use crate::args::InfoArguments;
@@ -12,7 +14,7 @@ use crate::load::{LoadedScene, Overrides, load};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &InfoArguments) -> Result<()> {
-    let loaded = load(&arguments.scene, &Overrides::default(), arguments.json)?;
+    let loaded = load(&arguments.scene, &Overrides::default(), PathExpressions::default(), arguments.json)?;
     let description = describe(&loaded);
     if arguments.json {
         print(&description.to_string());
@@ -64,7 +66,7 @@ fn describe(loaded: &LoadedScene) -> Value {
             "kind": format!("{:?}", scene.sampler.kind),
             "samples_per_pixel": scene.sampler.samples_per_pixel,
         },
-        "integrator": scene.integrator.type_name,
+        "integrator": method_name(&scene.integrator.type_name),
         "warnings": warnings,
     })
 }

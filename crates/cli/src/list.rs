@@ -43,6 +43,9 @@ pub(crate) fn run(arguments: &ListArguments) -> Result<()> {
         print(&json!({ "items": list }).to_string());
         return Ok(());
     }
+    if items.is_empty() {
+        print("none yet");
+    }
     for item in &items {
         let separator = if item.doc.is_empty() { "" } else { ": " };
         print(&format!("{}{separator}{}", item.name, item.doc));

@@ -4,9 +4,12 @@ use std::path::Path;
 
 use etendue::io::checkpoint::hash_bytes;
 use etendue::io::{load_assets, read_pbrt};
+use etendue::scene::diagnostics::nearest_name;
 use etendue::scene::document::{Document, Entity, Parameter, Value};
+use etendue::scene::parameters::ParameterSpec;
 use etendue::scene::{Diagnostics, Scene};
-use etendue::transport::method::INTEGRATORS;
+use etendue::transport::lpe::PathExpressions;
+use etendue::transport::{INTEGRATORS, Integrator, method};
 
 use crate::failure::{Failure, Result};
 use crate::report;
@@ -18,40 +21,59 @@ pub(crate) struct Overrides {
     pub(crate) resolution: Option<[i32; 2]>,
     /// Part of the image in shares of its size.
     pub(crate) crop: Option<[f32; 4]>,
-    /// `NAME[:key=value,...]`.
-    pub(crate) integrator: Option<String>,
+    /// Integrator in place of the scene's.
+    pub(crate) integrator: Option<Entity>,
     /// Word for the parameter `wavelengths` of the integrator.
     pub(crate) wavelengths: Option<&'static str>,
 }
 
 /// A scene with the document it was built from.
-#[derive(Debug)]
 pub(crate) struct LoadedScene {
     /// As written, with overrides.
     pub(crate) document: Document,
     /// As built.
     pub(crate) scene: Scene,
+    /// The method that the scene or the overrides ask for.
+    pub(crate) integrator: Box<dyn Integrator>,
     /// Problems that do not keep it from rendering.
     pub(crate) diagnostics: Diagnostics,
 }
 
-/// Reads and builds a scene; all problems are collected, and reported unless `quiet` leaves out the warnings.
-pub(crate) fn load(path: &Path, overrides: &Overrides, quiet: bool) -> Result<LoadedScene> {
+/// Reads and builds a scene with a method that fills layers by `expressions`; all problems are collected, and reported
+/// unless `quiet` leaves out the warnings.
+pub(crate) fn load(
+    path: &Path,
+    overrides: &Overrides,
+    expressions: PathExpressions,
+    quiet: bool,
+) -> Result<LoadedScene> {
     let (mut document, mut diagnostics) = read_pbrt(path);
     // A document with syntax errors still tells which of its files are missing.
     let (assets, problems) = load_assets(&document);
     diagnostics.append(problems);
-    apply(overrides, &mut document)?;
-    let (scene, problems) = Scene::build(&document, assets);
+    apply(overrides, &mut document);
+    let (integrator, mut method_problems) = match &document.integrator {
+        Some(entity) => method(entity, expressions),
+        None => method(&Entity::new("volpath"), expressions),
+    };
+    let (scene, mut problems) = Scene::build(&document, assets);
+    if diagnostics.has_errors() {
+        // What is left of a scene gives rise to warnings that the whole one would not.
+        problems.remove_warnings();
+        method_problems.remove_warnings();
+    }
     diagnostics.append(problems);
+    diagnostics.append(method_problems);
     report::diagnostics(&diagnostics, &document.sources, quiet);
-    match scene {
-        Some(scene) if !diagnostics.has_errors() => Ok(LoadedScene { document, scene, diagnostics }),
+    match (scene, integrator) {
+        (Some(scene), Some(integrator)) if !diagnostics.has_errors() => {
+            Ok(LoadedScene { document, scene, integrator, diagnostics })
+        }
         _ => Err(Failure::Scene),
     }
 }
 
-fn apply(overrides: &Overrides, document: &mut Document) -> Result<()> {
+fn apply(overrides: &Overrides, document: &mut Document) {
     if let Some([x, y]) = overrides.resolution {
         let film = document.film.get_or_insert_with(|| Entity::new("rgb"));
         set(film, "xresolution", Value::Integers(vec![x]));
@@ -63,14 +85,13 @@ fn apply(overrides: &Overrides, document: &mut Document) -> Result<()> {
         set(film, "cropwindow", Value::Floats(crop.to_vec()));
         film.parameters.retain(|p| p.name != "pixelbounds");
     }
-    if let Some(text) = &overrides.integrator {
-        document.integrator = Some(integrator_entity(text)?);
+    if let Some(integrator) = &overrides.integrator {
+        document.integrator = Some(integrator.clone());
     }
     if let Some(word) = overrides.wavelengths {
         let integrator = document.integrator.get_or_insert_with(|| Entity::new("path"));
         set(integrator, "wavelengths", Value::Strings(vec![word.to_owned()]));
     }
-    Ok(())
 }
 
 /// Gives a parameter a value, whatever it had.
@@ -79,35 +100,61 @@ fn set(entity: &mut Entity, name: &str, value: Value) {
     entity.parameters.push(Parameter::new(name, value));
 }
 
-/// `path:maxdepth=3,regularize=true` as an entity; the types of values follow the integrator's table.
-fn integrator_entity(text: &str) -> Result<Entity> {
+/// `path:maxdepth=3,regularize=true` as an entity. The types of values follow the integrator's table; for names that
+/// have none, they follow from the values.
+pub(crate) fn integrator_entity(text: &str) -> Result<Entity> {
     let (name, settings) = text.split_once(':').unwrap_or((text, ""));
     let mut entity = Entity::new(name);
-    let specs = INTEGRATORS.iter().find(|m| m.name == name).unwrap_or(&INTEGRATORS[0]).parameters;
+    let specs = INTEGRATORS.iter().find(|m| m.name == name).map(|m| m.parameters);
     for setting in settings.split(',').filter(|s| !s.is_empty()) {
         let (key, value) = setting.split_once('=').ok_or_else(|| {
             Failure::Usage(format!(
                 "'{setting}' is not a parameter; write --integrator NAME:key=value,key=value"
             ))
         })?;
-        let kind = specs.iter().find(|spec| spec.name == key).map_or("string", |spec| spec.kind);
-        let wrong = || Failure::Usage(format!("'{value}' is not a value of type {kind} for {key}"));
-        let value = match kind {
-            "integer" => Value::Integers(vec![value.parse().map_err(|_| wrong())?]),
-            "float" => Value::Floats(vec![value.parse().map_err(|_| wrong())?]),
-            "bool" => Value::Bools(vec![value.parse().map_err(|_| wrong())?]),
-            _ => Value::Strings(vec![value.to_owned()]),
+        let value = match specs {
+            Some(specs) => typed_value(name, key, value, specs)?,
+            None => guessed_value(value),
         };
-        if !specs.iter().any(|spec| spec.name == key) {
-            let known: Vec<&str> = specs.iter().map(|spec| spec.name).collect();
-            return Err(Failure::Usage(format!(
-                "{name} has no parameter {key}; it has {}",
-                known.join(", ")
-            )));
-        }
         entity.parameters.push(Parameter::new(key, value));
     }
     Ok(entity)
+}
+
+/// The value of a parameter of the method `name`, of the type that its table states.
+fn typed_value(name: &str, key: &str, value: &str, specs: &[ParameterSpec]) -> Result<Value> {
+    let Some(spec) = specs.iter().find(|spec| spec.name == key) else {
+        let known: Vec<&str> = specs.iter().map(|spec| spec.name).collect();
+        let message = match nearest_name(key, known.iter().copied()) {
+            Some(near) => format!("{name} has no parameter {key}; did you mean {near}?"),
+            None => format!("{name} has no parameter {key}; it has {}", known.join(", ")),
+        };
+        return Err(Failure::Usage(message));
+    };
+    let kind = spec.kind;
+    let wrong = || Failure::Usage(format!("'{value}' is not a value of type {kind} for {key}"));
+    Ok(match kind {
+        "integer" => Value::Integers(vec![value.parse().map_err(|_| wrong())?]),
+        "float" => {
+            let number: f32 = value.parse().map_err(|_| wrong())?;
+            Value::Floats(vec![Some(number).filter(|n| n.is_finite()).ok_or_else(wrong)?])
+        }
+        "bool" => Value::Bools(vec![value.parse().map_err(|_| wrong())?]),
+        _ => Value::Strings(vec![value.to_owned()]),
+    })
+}
+
+/// A value of the type that its spelling suggests.
+fn guessed_value(value: &str) -> Value {
+    if let Ok(integer) = value.parse() {
+        Value::Integers(vec![integer])
+    } else if let Ok(number) = value.parse() {
+        Value::Floats(vec![number])
+    } else if let Ok(truth) = value.parse() {
+        Value::Bools(vec![truth])
+    } else {
+        Value::Strings(vec![value.to_owned()])
+    }
 }
 
 /// A hash of everything that determines the image but for the seed and the number of passes: the text of the scene,

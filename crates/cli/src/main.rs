@@ -11,6 +11,7 @@ mod list;
 mod load;
 mod merge;
 mod metadata;
+mod outputs;
 mod progress;
 mod render;
 mod report;

@@ -6,12 +6,12 @@
 use std::path::Path;
 
 use etendue::image::Image;
-use etendue::io::images::read_image;
+use etendue::io::images::{read_image, write_image};
 use etendue::scene::film::FilmSums;
 
 use crate::args::MergeArguments;
 use crate::failure::{Failure, Result};
-use crate::{metadata, render, report};
+use crate::{metadata, outputs, report};
 
 /// One file to merge.
 struct Part {
@@ -25,11 +25,12 @@ struct Part {
 
 /// Runs the command.
 pub(crate) fn run(arguments: &MergeArguments) -> Result<()> {
+    outputs::check_images(&arguments.outputs)?;
     let parts = arguments.images.iter().map(|path| open(path)).collect::<Result<Vec<Part>>>()?;
     check_one_scene(&parts)?;
     let image =
         if parts.iter().all(|part| part.sums.is_some()) { merge_exactly(parts)? } else { average(parts)? };
-    render::write_all(&arguments.outputs, &image)
+    outputs::write_all(&arguments.outputs, |path| write_image(path, &image))
 }
 
 fn open(path: &Path) -> Result<Part> {
@@ -39,7 +40,10 @@ fn open(path: &Path) -> Result<Part> {
     let entry = |key: &str| image.metadata.get(key).cloned().ok_or_else(foreign);
     let (fingerprint, seed) = (entry(metadata::FINGERPRINT)?, entry(metadata::SEED)?);
     let passes = metadata::passes(&image).ok_or_else(foreign)?;
-    let n_passes = passes.iter().map(|r| r.end - r.start).sum();
+    let n_passes = passes.iter().map(|r| r.end.saturating_sub(r.start)).sum();
+    if n_passes == 0 {
+        return Err(Failure::Usage(format!("{name}: it holds no complete pass")));
+    }
     let bounds = metadata::pixels(&image).ok_or_else(foreign)?;
     let luminance = metadata::numbers(&image, metadata::LUMINANCE).ok_or_else(foreign)?;
     let mut sums = FilmSums::from_image(&image, bounds, luminance).ok();

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use etendue::image::Image;
+use etendue::scene::document::Value;
 use etendue::scene::film::PixelBounds;
 use etendue::scene::{Film, Scene};
+use etendue::transport::method_name;
 
 /// Keys of the metadata.
 pub(crate) const FINGERPRINT: &str = "etendue.fingerprint";
@@ -50,12 +52,21 @@ pub(crate) fn describe(
 }
 
 fn describe_integrator(scene: &Scene) -> String {
-    let parameters = scene.integrator.parameters.iter().map(|p| format!("{}={:?}", p.name, p.value));
-    let list: Vec<String> = parameters.collect();
-    if list.is_empty() {
-        scene.integrator.type_name.clone()
-    } else {
-        format!("{}: {}", scene.integrator.type_name, list.join(", "))
+    let name = method_name(&scene.integrator.type_name);
+    let parameters = scene.integrator.parameters.iter();
+    let list: Vec<String> =
+        parameters.filter_map(|p| Some(format!("{}={}", p.name, text(&p.value)?))).collect();
+    if list.is_empty() { name.to_owned() } else { format!("{name}:{}", list.join(",")) }
+}
+
+/// A single value as the command line takes it.
+fn text(value: &Value) -> Option<String> {
+    match value {
+        Value::Integers(values) => values.first().map(ToString::to_string),
+        Value::Floats(values) => values.first().map(ToString::to_string),
+        Value::Bools(values) => values.first().map(ToString::to_string),
+        Value::Strings(values) => values.first().cloned(),
+        _ => None,
     }
 }
 

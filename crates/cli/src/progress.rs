@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use etendue::io::checkpoint::{Checkpoint, write_checkpoint};
 use etendue::scene::Film;
-use etendue::transport::{Flow, Integrator, Observer, RayCounts};
+use etendue::transport::{Flow, Integrator, Observer, RayCounts, Stop};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::report;
@@ -74,6 +74,7 @@ pub(crate) struct Watch {
     deadline: Option<Instant>,
     checkpoint: Option<CheckpointPlan>,
     last_checkpoint: Mutex<Instant>,
+    n_passes: AtomicU64,
     n_samples: AtomicU64,
     closest: AtomicU64,
     shadow: AtomicU64,
@@ -86,11 +87,11 @@ impl fmt::Debug for Watch {
 }
 
 impl Watch {
-    /// Starts to watch a render of `n_samples` camera samples in `n_passes` passes.
+    /// Starts to watch a render into `film`.
     #[must_use]
     pub(crate) fn new(
-        n_samples: u64,
-        n_passes: u64,
+        film: &Film,
+        stop: &Stop,
         time: Option<Duration>,
         checkpoint: Option<CheckpointPlan>,
         show: ShowProgress,
@@ -99,8 +100,14 @@ impl Watch {
             ShowProgress::Yes => ProgressDrawTarget::stderr_with_hz(5),
             ShowProgress::No => ProgressDrawTarget::hidden(),
         };
-        let bar = ProgressBar::with_draw_target(Some(n_samples), target);
-        let template = "{percent:>3} % [{bar:30}] {msg}, {per_sec}, {elapsed} elapsed, {eta} left";
+        let n_passes = stop.passes.clone().filter(|pass| !film.holds_pass(*pass)).count() as u64;
+        let n_pixels = film.settings().crop.n_pixels() as u64;
+        let bar = ProgressBar::with_draw_target(Some(n_passes * n_pixels), target);
+        // Where time or error end the render, the share of the passes says nothing.
+        let template = match (time, stop.error) {
+            (None, None) => "{percent:>3} % [{bar:30}] {msg}, {per_sec}, {elapsed} elapsed, {eta} left",
+            _ => "{spinner} {msg}, {per_sec}, {elapsed} elapsed",
+        };
         if let Ok(style) = ProgressStyle::with_template(template) {
             let per_second = |state: &indicatif::ProgressState, out: &mut dyn fmt::Write| {
                 // A terminal that refuses text cannot be helped.
@@ -108,7 +115,7 @@ impl Watch {
             };
             bar.set_style(style.progress_chars("=> ").with_key("per_sec", per_second));
         }
-        bar.set_message(format!("pass 0/{n_passes}"));
+        bar.set_message("pass 1");
         let now = Instant::now();
         Self {
             bar,
@@ -116,6 +123,7 @@ impl Watch {
             deadline: time.map(|time| now + time),
             checkpoint,
             last_checkpoint: Mutex::new(now),
+            n_passes: AtomicU64::new(0),
             n_samples: AtomicU64::new(0),
             closest: AtomicU64::new(0),
             shadow: AtomicU64::new(0),
@@ -175,9 +183,9 @@ impl Observer for Watch {
         self.flow()
     }
 
-    fn pass_done(&self, pass: u64, film: &Film, integrator: &dyn Integrator) -> Flow {
-        let n_passes = self.bar.length().unwrap_or(0) / film.settings().crop.n_pixels().max(1) as u64;
-        self.bar.set_message(format!("pass {}/{n_passes}", pass + 1));
+    fn pass_done(&self, _: u64, film: &Film, integrator: &dyn Integrator) -> Flow {
+        let n_passes = self.n_passes.fetch_add(1, Ordering::Relaxed) + 1;
+        self.bar.set_message(format!("pass {}", n_passes + 1));
         if let Some(plan) = &self.checkpoint
             && let Ok(mut last) = self.last_checkpoint.lock()
             && last.elapsed() >= plan.every

@@ -4,19 +4,17 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use etendue::image::Image;
 use etendue::io::checkpoint::read_checkpoint;
-use etendue::io::images::write_image;
 use etendue::scene::{Film, Scene};
 use etendue::transport::lpe::PathExpressions;
-use etendue::transport::{Integrator, Outcome, Stop, method, render};
+use etendue::transport::{Integrator, Outcome, Stop, method_name, render};
 
 use crate::args::{RenderArguments, WavelengthArgument};
 use crate::failure::{Failure, Result};
-use crate::load::{LoadedScene, Overrides, fingerprint, load};
+use crate::load::{LoadedScene, Overrides, fingerprint, integrator_entity, load};
 use crate::progress::{CheckpointPlan, ShowProgress, Watch, catch_interruption, is_interrupted};
 use crate::stats::Statistics;
-use crate::{metadata, report};
+use crate::{metadata, outputs, report};
 
 /// A render, as meant: what to do, where the results go.
 struct Job {
@@ -43,46 +41,57 @@ pub(crate) fn run(arguments: &RenderArguments) -> Result<()> {
 fn run_in_pool(arguments: &RenderArguments, started: Instant) -> Result<()> {
     let mut job = prepare(arguments)?;
     if arguments.resume {
-        resume(&mut job)?;
+        resume(&mut job, arguments.quiet)?;
     }
     let seconds_build = started.elapsed().as_secs_f64();
 
     catch_interruption();
     let show = if arguments.quiet || arguments.no_progress { ShowProgress::No } else { ShowProgress::Yes };
-    let missing = job.stop.passes.clone().filter(|pass| !job.film.holds_pass(*pass)).count() as u64;
-    let n_pixels = job.film.settings().crop.n_pixels() as u64;
-    let watch = Watch::new(missing * n_pixels, missing, arguments.time, job.checkpoint.clone(), show);
+    let watch = Watch::new(&job.film, &job.stop, arguments.time, job.checkpoint.clone(), show);
     let outcome = render(&job.scene, job.integrator.as_mut(), &mut job.film, &job.stop, &watch);
     watch.finish(&job.film, job.integrator.as_ref());
 
-    write_outputs(arguments, &job)?;
-    report_faults(&job.film);
-    finish_statistics(arguments, &job, &watch, started, seconds_build)?;
+    // A failure of one file keeps none of the others from being written.
+    let written = write_outputs(arguments, &job);
+    let statistics = statistics(&job, &watch, started, seconds_build);
+    let noted = arguments.stats.as_ref().map_or(Ok(()), |path| statistics.write(path));
+    if !arguments.quiet {
+        report_faults(&job.film);
+    }
+    written?;
+    if !arguments.quiet {
+        report_end(&job, &statistics);
+    }
+    noted?;
     if outcome == Outcome::Stopped && is_interrupted() { Err(Failure::Interrupted) } else { Ok(()) }
 }
 
+/// Checks first what costs nothing, so that slips show at once, then reads and builds the scene.
 fn prepare(arguments: &RenderArguments) -> Result<Job> {
     let overrides = Overrides {
         resolution: arguments.resolution,
         crop: arguments.crop,
-        integrator: arguments.integrator.clone(),
+        integrator: arguments.integrator.as_deref().map(integrator_entity).transpose()?,
         wavelengths: arguments.wavelengths.map(|w| match w {
             WavelengthArgument::Hero => "hero",
             WavelengthArgument::Single => "single",
             WavelengthArgument::Bands => "bands",
         }),
     };
-    let LoadedScene { document, mut scene, .. } = load(&arguments.scene, &overrides, arguments.quiet)?;
+    let layers = layers(arguments);
+    let expressions = PathExpressions::new(&layers).map_err(|error| Failure::Usage(error.to_string()))?;
+    let names = expressions.names().to_vec();
+    outputs::check_images(&arguments.outputs)?;
+    for path in arguments.checkpoint.iter().chain(&arguments.stats) {
+        outputs::check_file(path)?;
+    }
+
+    let LoadedScene { document, mut scene, integrator, .. } =
+        load(&arguments.scene, &overrides, expressions, arguments.quiet)?;
     if let Some(seed) = arguments.seed {
         scene.sampler.seed = seed;
     }
-    let layers = layers(arguments);
     let fingerprint = fingerprint(&document, &layers);
-    let expressions = PathExpressions::new(&layers).map_err(|error| Failure::Usage(error.to_string()))?;
-    let names = expressions.names().to_vec();
-    let (integrator, problems) = method(&scene.integrator, expressions);
-    report::diagnostics(&problems, &document.sources, arguments.quiet);
-    let integrator = integrator.ok_or(Failure::Scene)?;
     let film = Film::new(scene.film.clone(), names);
     let outputs = outputs(arguments, &scene)?;
     let checkpoint = arguments.checkpoint.clone().map(|path| CheckpointPlan {
@@ -117,37 +126,31 @@ fn passes(arguments: &RenderArguments, scene: &Scene) -> Range<u64> {
     }
 }
 
-const FORMATS: [&str; 5] = ["exr", "png", "ppm", "pfm", "hdr"];
-
-/// Where results go; folders that do not exist and unknown formats are found before hours of work.
+/// Where results go: as asked for, or by the film's name into the current folder.
 fn outputs(arguments: &RenderArguments, scene: &Scene) -> Result<Vec<PathBuf>> {
-    let outputs = if arguments.outputs.is_empty() {
-        let name = Path::new(&scene.film.filename).file_name();
-        vec![name.map_or_else(|| PathBuf::from("etendue.exr"), PathBuf::from)]
-    } else {
-        arguments.outputs.clone()
-    };
-    for path in &outputs {
-        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase();
-        if !FORMATS.contains(&extension.as_str()) {
-            let message = format!("{}: images are written as .{}", path.display(), FORMATS.join(", ."));
-            return Err(Failure::Usage(message));
-        }
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
-        if let Some(folder) = folder
-            && !folder.is_dir()
-        {
-            return Err(Failure::Usage(format!("{}: there is no folder of that name", folder.display())));
+    if !arguments.outputs.is_empty() {
+        return Ok(arguments.outputs.clone());
+    }
+    let name = Path::new(&scene.film.filename).file_name();
+    let mut path = name.map_or_else(|| PathBuf::from("etendue.exr"), PathBuf::from);
+    if !outputs::is_image_name(&path) {
+        let wish = path.display().to_string();
+        path.set_extension("exr");
+        if !arguments.quiet {
+            report::warning(&format!("images of the type of {wish} are not written; see {}", path.display()));
         }
     }
-    Ok(outputs)
+    outputs::check_images(std::slice::from_ref(&path))?;
+    Ok(vec![path])
 }
 
-fn resume(job: &mut Job) -> Result<()> {
+fn resume(job: &mut Job, quiet: bool) -> Result<()> {
     let Some(plan) = &job.checkpoint else { return Ok(()) };
     let path = plan.path.display();
     if !plan.path.exists() {
-        report::note(&format!("{path} does not exist yet; starting from the beginning"));
+        if !quiet {
+            report::note(&format!("{path} does not exist yet; starting from the beginning"));
+        }
         return Ok(());
     }
     let checkpoint = read_checkpoint(&plan.path)
@@ -172,20 +175,11 @@ fn write_outputs(arguments: &RenderArguments, job: &Job) -> Result<()> {
     let mut image = job.film.develop();
     let name = arguments.scene.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     image.metadata = metadata::describe(&job.scene, &job.film, job.fingerprint, &name);
+    // Tiles of a pass that was not completed belong to no pass, so that nothing can be added to them.
     if arguments.passes.is_some() && job.film.n_passes() > 0 {
         image.channels.extend(job.film.sums().exact_channels());
     }
-    write_all(&job.outputs, &image)
-}
-
-/// Writes an image to several files; all are tried before the first failure is reported.
-pub(crate) fn write_all(outputs: &[PathBuf], image: &Image) -> Result<()> {
-    let failures: Vec<String> = outputs
-        .iter()
-        .filter_map(|path| write_image(path, image).err())
-        .map(|error| error.to_string())
-        .collect();
-    if failures.is_empty() { Ok(()) } else { Err(Failure::Running(failures.join("\n"))) }
+    outputs::write_precious(&job.outputs, &image)
 }
 
 fn report_faults(film: &Film) {
@@ -205,17 +199,11 @@ fn report_faults(film: &Film) {
     }
 }
 
-fn finish_statistics(
-    arguments: &RenderArguments,
-    job: &Job,
-    watch: &Watch,
-    started: Instant,
-    seconds_build: f64,
-) -> Result<()> {
+fn statistics(job: &Job, watch: &Watch, started: Instant, seconds_build: f64) -> Statistics {
     let relative_error = job.film.relative_error();
     let mut statistics = Statistics {
         version: env!("CARGO_PKG_VERSION"),
-        integrator: job.scene.integrator.type_name.clone(),
+        integrator: method_name(&job.scene.integrator.type_name),
         seconds_total: 0.0,
         seconds_build,
         seconds_render: watch.elapsed().as_secs_f64(),
@@ -234,18 +222,17 @@ fn finish_statistics(
     };
     statistics.measure_process(watch.rays());
     statistics.seconds_total = started.elapsed().as_secs_f64();
-    if !arguments.quiet {
-        let names: Vec<String> = job.outputs.iter().map(|p| p.display().to_string()).collect();
-        report::note(&format!(
-            "{}: {} samples per pixel in {:.1} s ({:.2} M samples/s)",
-            names.join(", "),
-            statistics.spp,
-            statistics.seconds_render,
-            statistics.samples as f64 / statistics.seconds_render.max(1e-9) / 1e6
-        ));
-    }
-    match &arguments.stats {
-        Some(path) => statistics.write(path),
-        None => Ok(()),
-    }
+    statistics
+}
+
+fn report_end(job: &Job, statistics: &Statistics) {
+    let names: Vec<String> = job.outputs.iter().map(|p| p.display().to_string()).collect();
+    report::note(&format!(
+        "{}: {} {} per pixel in {:.1} s ({:.2} M samples/s)",
+        names.join(", "),
+        statistics.spp,
+        if statistics.spp == 1 { "sample" } else { "samples" },
+        statistics.seconds_render,
+        statistics.samples as f64 / statistics.seconds_render.max(1e-9) / 1e6
+    ));
 }

@@ -14,7 +14,7 @@ pub(crate) struct Statistics {
     /// Version of the program.
     pub(crate) version: &'static str,
     /// Method.
-    pub(crate) integrator: String,
+    pub(crate) integrator: &'static str,
     /// Wall time from start to end.
     pub(crate) seconds_total: f64,
     /// Wall time of reading and building.

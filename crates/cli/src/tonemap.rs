@@ -5,9 +5,11 @@ use etendue::io::images::{read_image, write_image, write_png, write_ppm};
 
 use crate::args::{OperatorArgument, TonemapArguments};
 use crate::failure::{Failure, Result};
+use crate::outputs;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
+    outputs::check_images(&arguments.outputs)?;
     let image = read_image(&arguments.image).map_err(|error| Failure::Usage(error.to_string()))?;
     if image.rgb_pixels().is_none() {
         return Err(Failure::Usage(format!(
@@ -28,13 +30,9 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
     let mapped = apply(&image, operator, arguments.exposure);
     let dither = if arguments.dither { Dither::Ordered } else { Dither::None };
     let quantization = Quantization { dither, ..Quantization::default() };
-    for path in &arguments.outputs {
-        let result = match path.extension().and_then(|e| e.to_str()) {
-            Some("png") => write_png(path, &mapped, quantization),
-            Some("ppm") => write_ppm(path, &mapped, quantization),
-            _ => write_image(path, &mapped),
-        };
-        result.map_err(|error| Failure::Running(error.to_string()))?;
-    }
-    Ok(())
+    outputs::write_all(&arguments.outputs, |path| match outputs::extension(path).as_str() {
+        "png" => write_png(path, &mapped, quantization),
+        "ppm" => write_ppm(path, &mapped, quantization),
+        _ => write_image(path, &mapped),
+    })
 }

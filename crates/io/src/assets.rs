@@ -64,7 +64,11 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
                 assets.spectra.insert(name, samples);
             }
             Err(message) => {
-                diagnostics.error(span, message);
+                let error = diagnostics.error(span, message);
+                if Path::new(&name).is_relative() && !document.base_directory.join(&name).exists() {
+                    error.with_help("names of files are relative to the folder of the scene file");
+                }
+                assets.failed.insert(name);
             }
         }
     }

@@ -3,7 +3,7 @@
 //! The scene is built from a [`Document`](crate::Document) and its `Assets`, so that building opens no file.
 //! Everything is keyed by the file name exactly as the parameter wrote it.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use etendue_image::Texels;
@@ -36,4 +36,6 @@ pub struct Assets {
     pub images: HashMap<String, Arc<Texels>>,
     /// Measured spectra by file name: wavelengths in nanometres, ascending, with their values.
     pub spectra: HashMap<String, Vec<[f32; 2]>>,
+    /// Names of files that could not be read. Whoever tried has said why, so that the scene builder need not.
+    pub failed: HashSet<String>,
 }

@@ -202,6 +202,11 @@ impl Diagnostics {
     pub fn append(&mut self, mut other: Self) {
         self.list.append(&mut other.list);
     }
+
+    /// Leaves out the warnings: after an error they may be mere consequences of it.
+    pub fn remove_warnings(&mut self) {
+        self.list.retain(|problem| problem.severity == Severity::Error);
+    }
 }
 
 /// The candidate nearest to `name` by edit distance, if near enough to be a slip of the keyboard; the first in the

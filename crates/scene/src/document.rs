@@ -68,13 +68,15 @@ pub struct Parameter {
     pub span: Option<Span>,
     /// Colour space of `rgb` values.
     pub color_space: ColorSpaceName,
+    /// True for a default that `Attribute` gave to all entities of a kind: those that do not know it say nothing.
+    pub may_be_unused: bool,
 }
 
 impl Parameter {
     /// A parameter that no file wrote, in sRGB.
     #[must_use]
     pub fn new(name: impl Into<String>, value: Value) -> Self {
-        Self { name: name.into(), value, span: None, color_space: ColorSpaceName::Srgb }
+        Self { name: name.into(), value, span: None, color_space: ColorSpaceName::Srgb, may_be_unused: false }
     }
 }
 
@@ -87,13 +89,15 @@ pub struct Entity {
     pub span: Option<Span>,
     /// In the order written.
     pub parameters: Vec<Parameter>,
+    /// True if the reader has reported parameters as wrong and left them out.
+    pub is_incomplete: bool,
 }
 
 impl Entity {
     /// An entity that no file wrote.
     #[must_use]
     pub fn new(type_name: impl Into<String>) -> Self {
-        Self { type_name: type_name.into(), span: None, parameters: Vec::new() }
+        Self { type_name: type_name.into(), span: None, parameters: Vec::new(), is_incomplete: false }
     }
 
     /// With one more parameter.

@@ -84,6 +84,8 @@ impl<'a> BuildContext<'a> {
             samples.samples
         } else if let Some(samples) = self.assets.spectra.get(name) {
             samples.clone()
+        } else if self.assets.failed.contains(name) {
+            return None;
         } else if let Some(stand_in) = etendue_spectrum::known_but_missing(name) {
             self.diagnostics.warning(
                 span,
@@ -240,6 +242,19 @@ impl<'a, 'c> Parameters<'a, 'c> {
         self.used.fill(true);
     }
 
+    /// Reports that the entity cannot be built without the parameter `name`, nor with an empty one, unless it is there
+    /// and what is wrong with it has been reported already.
+    pub fn missing(&mut self, name: &'static str, message: impl Into<String>) {
+        let given = self.find(name).map(|parameter| &parameter.value);
+        let is_empty_name =
+            matches!(given, Some(Value::Strings(names)) if names.iter().all(String::is_empty));
+        if is_empty_name || given.is_none() && !self.entity.is_incomplete {
+            let span = self.span_of(name);
+            self.context.diagnostics.error(span, message);
+        }
+        self.accept_all();
+    }
+
     fn mismatch(&mut self, parameter: &Parameter, wanted: &str) {
         let wanted = wanted.trim_end_matches("_value").trim_end_matches("_opt");
         self.context.diagnostics.error(
@@ -300,6 +315,16 @@ impl<'a, 'c> Parameters<'a, 'c> {
     /// An integer with a default.
     pub fn integer(&mut self, name: &'static str, default: i32) -> i32 {
         self.integer_opt(name).unwrap_or(default)
+    }
+
+    /// A number of things with a default; negative ones are reported.
+    pub fn count(&mut self, name: &'static str, default: u32) -> u32 {
+        let Some(value) = self.integer_opt(name) else { return default };
+        u32::try_from(value).unwrap_or_else(|_| {
+            let span = self.span_of(name);
+            self.context.diagnostics.error(span, format!("\"{name}\" must not be negative, but is {value}"));
+            default
+        })
     }
 
     /// A boolean with a default.
@@ -412,11 +437,18 @@ impl<'a, 'c> Parameters<'a, 'c> {
         } else {
             nearest_name(texture, spectra.keys().map(|(name, _)| name.as_str())).map(str::to_owned)
         };
+        let is_of_other_kind = match kind {
+            "float" => spectra.keys().any(|(name, _)| name == texture),
+            _ => floats.contains_key(texture),
+        };
         let error = self.context.diagnostics.error(
             parameter.span,
             format!("no {kind} texture named \"{texture}\" is defined before its use"),
         );
-        if let Some(near) = near {
+        if is_of_other_kind {
+            let other = if kind == "float" { "spectrum" } else { "float" };
+            error.with_help(format!("\"{texture}\" is a {other} texture; here a {kind} texture is needed"));
+        } else if let Some(near) = near {
             error.with_help(format!("did you mean \"{near}\"?"));
         }
     }
@@ -424,7 +456,7 @@ impl<'a, 'c> Parameters<'a, 'c> {
     /// Warns of parameters that nobody asked for.
     pub fn finish(self) {
         for (parameter, used) in self.entity.parameters.iter().zip(&self.used) {
-            if *used || self.asked.contains(&parameter.name.as_str()) {
+            if *used || parameter.may_be_unused || self.asked.contains(&parameter.name.as_str()) {
                 continue;
             }
             let warning = self.context.diagnostics.warning(

@@ -10,7 +10,7 @@ pub mod path_tracing;
 pub mod render;
 
 pub use integrator::{Control, Integrator, PassEnd, Passes, RayCounts};
-pub use method::{INTEGRATORS, method};
+pub use method::{INTEGRATORS, method, method_name};
 pub use render::{Flow, Observer, Outcome, Stop, Unobserved, render};
 
 #[cfg(test)]

@@ -24,6 +24,9 @@ pub const SHARP_ALPHA: f32 = 0.1;
 /// The most expressions that one render can have.
 pub const MAX_EXPRESSIONS: usize = 32;
 
+/// Names that layers cannot have, since films have channels of these names.
+const RESERVED_NAMES: [&str; 7] = ["Albedo", "N", "Ns", "P", "depth", "sums", "variance"];
+
 /// A scattering event along a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
@@ -212,6 +215,9 @@ impl PathExpressions {
             }
             if name.is_empty() || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-') {
                 return Err(refuse("its name must consist of letters, digits, '_' and '-'"));
+            }
+            if RESERVED_NAMES.contains(&name.as_str()) {
+                return Err(refuse(&format!("its name \"{name}\" is that of another layer of the film")));
             }
             result.expressions.push(PathExpression::new(expression)?);
             result.names.push(name.clone());

@@ -78,6 +78,13 @@ const FOREIGN_PARAMETERS: &[&str] = &[
     "imagefilename",
 ];
 
+/// The name of the method that [`method`] takes for a name: its own, that of the method it is another name of, or that
+/// of the one that stands in for it.
+#[must_use]
+pub fn method_name(name: &str) -> &'static str {
+    INTEGRATORS.iter().find(|m| m.name == name).map_or("path", |m| m.name)
+}
+
 /// The method that an entity names, which fills layers by these expressions; a name that is known and not available
 /// yet gives path tracing with a warning, an unknown name an error.
 #[must_use]

@@ -114,8 +114,8 @@ impl PathSettings {
     /// Reads the parameters of an integrator entity.
     pub fn from_parameters(p: &mut Parameters<'_, '_>) -> Self {
         let default = Self::default();
-        let max_depth = p.integer("maxdepth", default.max_depth as i32).max(0) as u32;
-        let roulette_depth = p.integer("roulettedepth", default.roulette_depth as i32).max(0) as u32;
+        let max_depth = p.count("maxdepth", default.max_depth);
+        let roulette_depth = p.count("roulettedepth", default.roulette_depth);
         let regularize = p.bool("regularize", false);
         let strategies = [
             ("both", LightStrategy::Both),

@@ -23,6 +23,15 @@ pub fn write_atomically<E: From<io::Error>>(
     Ok(temporary.rename_to(path)?)
 }
 
+/// Finds out, before long work, whether [`write_atomically`] could write this file, by making and removing an empty one
+/// beside it.
+///
+/// # Errors
+/// Those of the file system.
+pub fn check_writable(path: &Path) -> io::Result<()> {
+    Temporary::beside(path).map(|_| ())
+}
+
 /// A file that is removed unless it gets its final name.
 #[derive(Debug)]
 struct Temporary {

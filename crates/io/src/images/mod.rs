@@ -29,7 +29,7 @@ use std::path::Path;
 use etendue_image::{Encoding, Image, Texels};
 use image::ImageFormat;
 
-pub use atomic::write_atomically;
+pub use atomic::{check_writable, write_atomically};
 pub use error::{ImageError, ImageErrorCause};
 pub use write::{write_image, write_png, write_ppm, write_ppm_ascii};
 

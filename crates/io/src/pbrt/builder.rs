@@ -116,7 +116,7 @@ impl Builder {
         };
         for parameter in &target.parameters {
             list.retain(|old| old.name != parameter.name);
-            list.push(parameter.clone());
+            list.push(Parameter { may_be_unused: true, ..parameter.clone() });
         }
     }
 }

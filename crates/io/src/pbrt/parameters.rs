@@ -84,15 +84,19 @@ impl Items {
 }
 
 impl Parser<'_, '_> {
-    /// All parameters that follow. Those with errors are reported and left out.
-    pub(super) fn parameters(&mut self) -> Vec<Parameter> {
+    /// All parameters that follow, and whether any is missing: those with errors are reported and left out.
+    pub(super) fn parameters(&mut self) -> (Vec<Parameter>, bool) {
         let mut parameters: Vec<Parameter> = Vec::new();
+        let mut is_incomplete = false;
         while let Some(token) = self.lexer.next() {
             if !matches!(token.kind, TokenKind::Text | TokenKind::UnterminatedText) {
                 self.lexer.unread(token);
                 break;
             }
-            let Ok(parameter) = self.parameter(token) else { continue };
+            let Ok(parameter) = self.parameter(token) else {
+                is_incomplete = true;
+                continue;
+            };
             let Some(index) = parameters.iter().position(|old| old.name == parameter.name) else {
                 parameters.push(parameter);
                 continue;
@@ -108,7 +112,7 @@ impl Parser<'_, '_> {
                 parameters[index] = parameter;
             }
         }
-        parameters
+        (parameters, is_incomplete)
     }
 
     /// The parameter with that declaration.
@@ -121,7 +125,8 @@ impl Parser<'_, '_> {
         let items = self.items(declaration, declared)?;
         let value = self.value(declaration, declared, &name, items)?;
         let color_space = self.builder.state.color_space;
-        Ok(Parameter { name, value, span: Some(self.span(declaration)), color_space })
+        let span = Some(self.span(declaration));
+        Ok(Parameter { name, value, span, color_space, may_be_unused: false })
     }
 
     fn declaration(&mut self, token: Token) -> Parsed<(Type, String)> {
@@ -261,7 +266,8 @@ impl Parser<'_, '_> {
                     items.floats.push(value);
                     return Ok(());
                 }
-                if text.parse::<f32>().is_ok_and(f32::is_infinite) {
+                let has_digits = text.contains(|c: char| c.is_ascii_digit());
+                if has_digits && text.parse::<f32>().is_ok_and(f32::is_infinite) {
                     let message = format!("{} does not fit single precision", self.describe(Some(token)));
                     return self.fail(token, message);
                 }

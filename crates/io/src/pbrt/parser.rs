@@ -209,8 +209,8 @@ impl<'a> Parser<'a, '_> {
     /// A type name with parameters.
     fn entity(&mut self, directive: Token, what: &str) -> Parsed<Entity> {
         let name = self.text(directive, what)?;
-        let parameters = self.parameters();
-        Ok(Entity { type_name: name.content, span: Some(name.span), parameters })
+        let (parameters, is_incomplete) = self.parameters();
+        Ok(Entity { type_name: name.content, span: Some(name.span), parameters, is_incomplete })
     }
 }
 
@@ -262,7 +262,11 @@ impl Parser<'_, '_> {
     fn check_place(&mut self, directive: Token, place: Place) -> Parsed<()> {
         let name = self.lexer.text(directive);
         if place == Place::Options && self.builder.in_world {
-            return self.fail(directive, format!("`{name}` must stand before `WorldBegin`"));
+            let message = match name {
+                "WorldBegin" => "there is a `WorldBegin` before this one".to_owned(),
+                name => format!("`{name}` must stand before `WorldBegin`"),
+            };
+            return self.fail(directive, message);
         }
         if place == Place::World && !self.builder.in_world {
             // The first one says it all if `WorldBegin` was forgotten.
@@ -412,7 +416,8 @@ impl Parser<'_, '_> {
             _ => return self.fail(token, "the value of an option stands without brackets"),
         };
         let color_space = self.builder.state.color_space;
-        Ok(Parameter { name: name.content, value, span: Some(name.span), color_space })
+        let span = Some(name.span);
+        Ok(Parameter { name: name.content, value, span, color_space, may_be_unused: false })
     }
 
     fn attribute_statement(&mut self, directive: Token, name: &str) -> Parsed<()> {

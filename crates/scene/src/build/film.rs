@@ -61,6 +61,27 @@ pub const SAMPLERS: &[(&str, &[ParameterSpec])] = &[
     ("stratified", STRATIFIED),
 ];
 
+/// Sensors of pbrt-v4 for which the standard observer stands in.
+const MISSING_SENSORS: [&str; 17] = [
+    "canon_eos_100d",
+    "canon_eos_1dx_mkii",
+    "canon_eos_200d",
+    "canon_eos_200d_mkii",
+    "canon_eos_5d",
+    "canon_eos_5d_mkii",
+    "canon_eos_5d_mkiii",
+    "canon_eos_5d_mkiv",
+    "canon_eos_5ds",
+    "canon_eos_m",
+    "hasselblad_l1d_20c",
+    "nikon_d810",
+    "nikon_d850",
+    "sony_ilce_6400",
+    "sony_ilce_7m3",
+    "sony_ilce_7rm3",
+    "sony_ilce_9",
+];
+
 /// The largest image: beyond it sums alone would need hundreds of gigabytes.
 const MAX_PIXELS: u64 = 1 << 30;
 
@@ -150,6 +171,7 @@ fn read_kind(p: &mut Parameters<'_, '_>, document: &Document) -> FilmKind {
         unknown => {
             let span = p.span();
             p.diagnostics().unknown_name(span, "film", unknown, known_names(FILMS));
+            p.accept_all();
             FilmKind::Rgb
         }
     }
@@ -185,12 +207,13 @@ fn read_spectral(p: &mut Parameters<'_, '_>) -> FilmKind {
 
 fn read_sensor(p: &mut Parameters<'_, '_>, document: &Document) -> Sensor {
     let name = p.string("sensor", "cie1931");
-    if name != "cie1931" {
-        let span = p.span_of("sensor");
-        p.diagnostics().warning(
-            span,
-            format!("the sensor \"{name}\" is not available yet; \"cie1931\" stands in for it"),
-        );
+    let span = p.span_of("sensor");
+    if MISSING_SENSORS.contains(&name.as_str()) {
+        let message = format!("the sensor \"{name}\" is not available yet; \"cie1931\" stands in for it");
+        p.diagnostics().warning(span, message);
+    } else if name != "cie1931" {
+        let known = MISSING_SENSORS.iter().copied().chain(["cie1931"]);
+        p.diagnostics().unknown_name(span, "sensor", &name, known);
     }
     let white_balance = p.float("whitebalance", 0.0);
     Sensor::cie1931(&SensorSettings {

@@ -123,13 +123,11 @@ fn report_mesh<E: std::fmt::Display>(
 pub(super) fn read_triangle_mesh(p: &mut Parameters<'_, '_>) -> Option<TriangleMesh> {
     let positions = p.points3("P").unwrap_or_default().to_vec();
     if positions.is_empty() {
-        let span = p.span();
-        p.diagnostics().error(span, "a triangle mesh needs vertex positions \"P\"");
+        p.missing("P", "a triangle mesh needs vertex positions \"P\"");
         return None;
     }
     if !p.has("indices") && positions.len() != 3 {
-        let span = p.span();
-        p.diagnostics().error(span, "a triangle mesh of more than one triangle needs \"indices\"");
+        p.missing("indices", "a triangle mesh of more than one triangle needs \"indices\"");
         return None;
     }
     let n = positions.len();
@@ -141,7 +139,7 @@ pub(super) fn read_triangle_mesh(p: &mut Parameters<'_, '_>) -> Option<TriangleM
     let uvs = read_uvs(p, n);
     let face_indices = read_face_indices(p);
     let mesh = TriangleMesh { positions, indices: indices?, normals, tangents, uvs, face_indices };
-    let span = p.span();
+    let span = p.span_of("indices");
     report_mesh(p, span, mesh.validate())?;
     Some(mesh)
 }
@@ -149,8 +147,7 @@ pub(super) fn read_triangle_mesh(p: &mut Parameters<'_, '_>) -> Option<TriangleM
 pub(super) fn read_bilinear_mesh(p: &mut Parameters<'_, '_>) -> Option<BilinearMesh> {
     let positions = p.points3("P").unwrap_or_default().to_vec();
     if positions.is_empty() {
-        let span = p.span();
-        p.diagnostics().error(span, "a bilinear mesh needs vertex positions \"P\"");
+        p.missing("P", "a bilinear mesh needs vertex positions \"P\"");
         return None;
     }
     let n = positions.len();
@@ -165,7 +162,7 @@ pub(super) fn read_bilinear_mesh(p: &mut Parameters<'_, '_>) -> Option<BilinearM
         p.diagnostics().warning(span, "\"emissionfilename\" only guides sampling; it is not used");
     }
     let mesh = BilinearMesh { positions, indices: indices?, normals, uvs, face_indices };
-    let span = p.span();
+    let span = p.span_of("indices");
     report_mesh(p, span, mesh.validate())?;
     Some(mesh)
 }
@@ -190,9 +187,8 @@ pub(super) fn read_ply_mesh(p: &mut Parameters<'_, '_>, meshes: &mut MeshStore) 
     }
     p.ignore("displacement");
     p.ignore("edgelength");
-    let Some(name) = p.string_opt("filename") else {
-        let span = p.span();
-        p.diagnostics().error(span, "a \"plymesh\" needs a \"filename\"");
+    let Some(name) = p.string_opt("filename").filter(|name| !name.is_empty()) else {
+        p.missing("filename", "a \"plymesh\" needs a \"filename\"");
         return Vec::new();
     };
     // A file that could not be read was reported when it was loaded.

@@ -73,6 +73,7 @@ impl Scene {
         let camera = builder.build_camera(&film);
         builder.check_accelerator();
         let lights = builder.build_lights(&geometry);
+        // After an error it may be the light that is missing.
         if lights.lights.is_empty() && !builder.context.diagnostics.has_errors() {
             builder.context.diagnostics.warning(None, "the scene has no lights; the image will be black");
         }
@@ -170,7 +171,9 @@ impl Builder<'_, '_> {
                 let message = "the accelerator \"kdtree\" is not available yet; \"bvh\" stands in for it";
                 self.context.diagnostics.warning(entity.span, message);
             }
-            unknown => self.context.diagnostics.unknown_name(entity.span, "accelerator", unknown, ["bvh"]),
+            unknown => {
+                self.context.diagnostics.unknown_name(entity.span, "accelerator", unknown, ["bvh", "kdtree"]);
+            }
         }
     }
 }

@@ -105,6 +105,7 @@ impl Camera {
                     let span = parameters.span();
                     let known = CAMERAS.iter().map(|(name, _)| *name);
                     parameters.diagnostics().unknown_name(span, "camera", name, known);
+                    parameters.accept_all();
                 }
                 Projection::Perspective(read_perspective(parameters, size))
             }

@@ -323,14 +323,15 @@ impl Picture {
 /// The picture that `filename` names; problems are reported.
 pub(super) fn read_picture(p: &mut Parameters) -> Option<Picture> {
     let span = p.span_of("filename");
-    let Some(filename) = p.string_opt("filename") else {
-        let text = format!("a {} light needs \"filename\"", p.entity().type_name);
-        p.diagnostics().error(span, text);
+    let Some(filename) = p.string_opt("filename").filter(|name| !name.is_empty()) else {
+        p.missing("filename", format!("a {} light needs \"filename\"", p.entity().type_name));
         return None;
     };
     let assets = p.context.assets;
     let Some(texels) = assets.images.get(&filename) else {
-        p.diagnostics().error(span, format!("the picture \"{filename}\" was not loaded"));
+        if !assets.failed.contains(&filename) {
+            p.diagnostics().error(span, format!("the picture \"{filename}\" was not loaded"));
+        }
         return None;
     };
     let table = DecodeTable::new(Encoding::Srgb);

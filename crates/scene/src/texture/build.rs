@@ -218,15 +218,15 @@ impl Textures {
         let mapping = Mapping2::from_parameters(p, world_from_texture);
         let options = read_image_options(p);
         let (scale, invert) = (p.float("scale", 1.0), p.bool("invert", false));
-        let name = p.string("filename", "");
-        let span = p.span_of("filename");
+        let Some(name) = p.string_opt("filename").filter(|name| !name.is_empty()) else {
+            p.missing("filename", "an image texture needs a \"filename\"");
+            return None;
+        };
         let Some(texels) = p.context.assets.images.get(&name) else {
-            let message = if name.is_empty() {
-                "an image texture needs a \"filename\"".to_owned()
-            } else {
-                format!("the picture \"{name}\" was not loaded")
-            };
-            p.diagnostics().error(span, message);
+            if !p.context.assets.failed.contains(&name) {
+                let span = p.span_of("filename");
+                p.diagnostics().error(span, format!("the picture \"{name}\" was not loaded"));
+            }
             return None;
         };
         let image: ImageId = self.add_image(&name, texels, options);

@@ -1,0 +1,77 @@
+//! Where images go: what can be refused is refused before hours of work, and what was rendered is not lost.
+
+use std::path::{Path, PathBuf};
+
+use etendue::image::Image;
+use etendue::io::images::{ImageError, check_writable, write_image};
+
+use crate::failure::{Failure, Result};
+
+/// Extensions of the formats that are written.
+const FORMATS: [&str; 5] = ["exr", "png", "ppm", "pfm", "hdr"];
+
+/// Lower-case extension, empty if there is none.
+#[must_use]
+pub(crate) fn extension(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+/// True if images are written with that extension.
+#[must_use]
+pub(crate) fn is_image_name(path: &Path) -> bool {
+    FORMATS.contains(&extension(path).as_str())
+}
+
+/// Refuses unknown formats, folders that do not exist, and files that cannot be written.
+pub(crate) fn check_images(paths: &[PathBuf]) -> Result<()> {
+    for path in paths {
+        if !is_image_name(path) {
+            let message = format!("{}: images are written as .{}", path.display(), FORMATS.join(", ."));
+            return Err(Failure::Usage(message));
+        }
+        check_file(path)?;
+    }
+    Ok(())
+}
+
+/// Refuses a file in a folder that does not exist, and one that cannot be written.
+pub(crate) fn check_file(path: &Path) -> Result<()> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    if let Some(folder) = folder
+        && !folder.is_dir()
+    {
+        let message = format!("{}: there is no folder {}; make it first", path.display(), folder.display());
+        return Err(Failure::Usage(message));
+    }
+    check_writable(path)
+        .map_err(|error| Failure::Running(format!("cannot write {}: {error}", path.display())))
+}
+
+/// Writes to several files; all are tried before failures are reported.
+pub(crate) fn write_all(paths: &[PathBuf], write: impl Fn(&Path) -> WriteResult) -> Result<()> {
+    let failures = failures(paths, write);
+    if failures.is_empty() { Ok(()) } else { Err(Failure::Running(failures.join("\n"))) }
+}
+
+type WriteResult = std::result::Result<(), ImageError>;
+
+fn failures(paths: &[PathBuf], write: impl Fn(&Path) -> WriteResult) -> Vec<String> {
+    let message = |error: ImageError| format!("cannot write {error}");
+    paths.iter().filter_map(|path| write(path).err()).map(message).collect()
+}
+
+/// Writes what took long to make: where every file fails, for example because the disk became full, it is kept in the
+/// folder of temporary files.
+pub(crate) fn write_precious(paths: &[PathBuf], image: &Image) -> Result<()> {
+    let mut failures = failures(paths, |path| write_image(path, image));
+    if failures.is_empty() {
+        return Ok(());
+    }
+    if failures.len() == paths.len() {
+        let refuge = std::env::temp_dir().join(format!("etendue-{}.exr", std::process::id()));
+        if write_image(&refuge, image).is_ok() {
+            failures.push(format!("the image is kept in {}", refuge.display()));
+        }
+    }
+    Err(Failure::Running(failures.join("\n")))
+}

@@ -1,0 +1,229 @@
+//! Interrupted renders: killed, stopped by Ctrl-C, and taken up again.
+
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+use etendue::math::Rng;
+
+use crate::support::{Folder, ROOM, assert_same, is_slow};
+
+/// A render of the room in `n` passes that keeps its state after each.
+fn arguments(n: u32) -> String {
+    format!("render scene.pbrt -q -o out.exr --spp {n} --threads 2 --checkpoint state --every 0s --resume")
+}
+
+fn start(folder: &Folder, arguments: &str) -> Child {
+    let arguments: Vec<&str> = arguments.split_whitespace().collect();
+    folder
+        .command(&arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts")
+}
+
+/// A render that is killed at random moments and taken up again ends with the bits of one that was left in peace.
+#[test]
+fn killed_renders() {
+    const PASSES: u32 = 48;
+    let folder = Folder::with_scene(ROOM);
+    let begun = Instant::now();
+    let whole = folder.render("whole", &format!("--spp {PASSES} --threads 2 --checkpoint other --every 0s"));
+    let time = begun.elapsed();
+    let kills = if is_slow() { 20 } else { 3 };
+    let mut rng = Rng::new(etendue::math::hash64(&[u64::from(PASSES)]), 0);
+    let mut n_midway = 0;
+    for _ in 0..kills {
+        // Each life is a random share of what the whole takes; late kills leave less to do for the next.
+        let life = time.mul_f64(f64::from(rng.next_f32()) * 0.6);
+        let mut child = start(&folder, &arguments(PASSES));
+        std::thread::sleep(life);
+        let is_running = child.try_wait().expect("it can be asked").is_none();
+        child.kill().expect("it can be killed");
+        child.wait().expect("it ends");
+        n_midway += u32::from(is_running);
+        if !is_running {
+            // It came to its end: begin anew, so that there is something to kill.
+            assert_same(&whole, &folder.image("out.exr"));
+            std::fs::remove_file(folder.path("state")).expect("removed");
+        }
+    }
+    assert!(n_midway > 0, "no render was killed midway");
+    folder.run(&arguments(PASSES)).expect(0);
+    assert_same(&whole, &folder.image("out.exr"));
+    assert_eq!(folder.image("out.exr").metadata, whole.metadata);
+}
+
+/// A finished render can be continued: more passes, the same bits as if they had been asked for at once.
+#[test]
+fn continued_renders() {
+    let folder = Folder::with_scene(ROOM);
+    let whole = folder.render("whole", "--spp 12 --lpe direct=L.?E");
+    folder.render("out", "--spp 5 --lpe direct=L.?E --checkpoint state");
+    folder.run("render scene.pbrt -o out.exr --spp 12 --lpe direct=L.?E --checkpoint state --resume --stats s.json")
+        .expect(0);
+    assert_same(&whole, &folder.image("out.exr"));
+    let stats: serde_json::Value = serde_json::from_slice(&folder.read("s.json")).expect("JSON");
+    assert_eq!(stats["spp"], 12);
+    assert_eq!(stats["samples"], 7 * 40 * 24);
+    // With nothing left to do, the image is written from the state.
+    std::fs::remove_file(folder.path("out.exr")).expect("removed");
+    let again = folder.render("out", "--spp 12 --lpe direct=L.?E --checkpoint state --resume");
+    assert_same(&whole, &again);
+}
+
+/// Without `--resume` a checkpoint is begun anew.
+#[test]
+fn checkpoints_without_resume() {
+    let folder = Folder::with_scene(ROOM);
+    folder.render("a", "--spp 4 --checkpoint state");
+    let b = folder.render("b", "--spp 2 --checkpoint state");
+    assert_eq!(b.metadata["etendue.passes"], "0..2");
+    let c = folder.render("c", "--spp 1 --checkpoint state --resume");
+    assert_eq!(c.metadata["etendue.passes"], "0..2");
+}
+
+/// Nothing to resume from is no failure: the first start and all others can be the same command.
+#[test]
+fn first_start() {
+    let folder = Folder::with_scene(ROOM);
+    folder
+        .run("render scene.pbrt -o a.exr --spp 1 --checkpoint state --resume")
+        .expect(0)
+        .says("state does not exist yet; starting from the beginning");
+    assert!(folder.path("state").is_file());
+}
+
+/// The state of another render is refused, and stays as it is.
+#[test]
+fn foreign_checkpoints() {
+    let folder = Folder::with_scene(ROOM);
+    folder.render("a", "--spp 2 --checkpoint state");
+    let state = folder.read("state");
+    folder.write("other.pbrt", ROOM.replace("0.7 0.4 0.2", "0.7 0.4 0.3"));
+    let another = "it belongs to another scene, resolution, integrator or set of layers";
+    for (arguments, says) in [
+        ("other.pbrt", another),
+        ("scene.pbrt --resolution 20x12", another),
+        ("scene.pbrt --crop 0,0.5,0,1", another),
+        ("scene.pbrt --integrator path:maxdepth=2", another),
+        ("scene.pbrt --lpe direct=LDE", another),
+        ("scene.pbrt --wavelengths single", another),
+        ("scene.pbrt --seed 3", "it was rendered with seed 0, not 3"),
+    ] {
+        folder
+            .run(&format!("render {arguments} -o b.exr --spp 4 --checkpoint state --resume"))
+            .expect(2)
+            .says("cannot resume from state")
+            .says(says);
+        assert!(!folder.path("b.exr").exists());
+        assert!(folder.read("state") == state);
+    }
+}
+
+/// Damaged states are told from whole ones.
+#[test]
+fn damaged_checkpoints() {
+    let folder = Folder::with_scene(ROOM);
+    folder.render("a", "--spp 2 --checkpoint state");
+    let good = folder.read("state");
+    let mut flipped = good.clone();
+    flipped[good.len() / 2] ^= 4;
+    for (bytes, says) in [
+        (&flipped[..], "damaged"),
+        (&good[..good.len() / 2], "damaged"),
+        (&good[..10], "damaged"),
+        (b"", "not a checkpoint"),
+        (b"text", "not a checkpoint"),
+    ] {
+        folder.write("state", bytes);
+        folder
+            .run("render scene.pbrt -o b.exr --spp 4 --checkpoint state --resume")
+            .expect(2)
+            .says("cannot resume from state")
+            .says(says);
+        assert!(!folder.path("b.exr").exists());
+        assert_eq!(folder.read("state"), bytes);
+    }
+}
+
+#[cfg(unix)]
+mod signals {
+    use super::*;
+    use crate::support::scene;
+
+    /// Sends a signal as a terminal would.
+    fn send(child: &Child, signal: &str) {
+        let status = std::process::Command::new("kill")
+            .args([signal, &child.id().to_string()])
+            .status()
+            .expect("kill runs");
+        assert!(status.success());
+    }
+
+    /// Waits for the end; a render that does not react fails the test.
+    fn end(mut child: Child) -> (Option<i32>, String) {
+        let begun = Instant::now();
+        while child.try_wait().expect("it can be asked").is_none() {
+            if begun.elapsed() > Duration::from_secs(30) {
+                child.kill().expect("it can be killed");
+                panic!("the render does not end");
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        let output = child.wait_with_output().expect("it has ended");
+        (output.status.code(), String::from_utf8(output.stderr).expect("text"))
+    }
+
+    fn wait_for(path: &std::path::Path) {
+        let begun = Instant::now();
+        while !path.exists() {
+            assert!(begun.elapsed() < Duration::from_secs(60), "{} does not appear", path.display());
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// Ctrl-C ends the render, writes what is finished, says so by the exit code, and the render can go on later.
+    #[test]
+    fn interrupted_renders() {
+        for signal in ["-INT", "-TERM"] {
+            let folder = Folder::with_scene(ROOM);
+            let child = start(&folder, &arguments(1_000_000));
+            wait_for(&folder.path("state"));
+            send(&child, signal);
+            let (code, text) = end(child);
+            assert_eq!(code, Some(130), "{text}");
+            assert!(text.contains("interrupted; what was finished is written"), "{text}");
+            let image = folder.image("out.exr");
+            let n: u64 = image.metadata["etendue.spp"].parse().expect("a number");
+            assert!((1..1_000_000).contains(&n), "{n}");
+            let whole = folder.render("whole", &format!("--spp {n}"));
+            assert_same(&whole, &image);
+
+            let more = n + 3;
+            let whole = folder.render("whole", &format!("--spp {more}"));
+            let resumed = folder.render("out", &format!("--spp {more} --checkpoint state --resume"));
+            assert_same(&whole, &resumed);
+        }
+    }
+
+    /// A first pass that is cut short leaves a part of a picture, but no state that would count it twice.
+    #[test]
+    fn interrupted_first_pass() {
+        // A deep room of white walls under a dim lamp, large enough for seconds in one pass.
+        let world =
+            "Material \"diffuse\" \"rgb reflectance\" [ 0.9 0.9 0.9 ]\nShape \"sphere\" \"float radius\" 5";
+        let text = scene("Integrator \"path\" \"integer maxdepth\" 60 \"integer roulettedepth\" 60", world);
+        let folder = Folder::with_scene(&text);
+        let child = start(&folder, &(arguments(4) + " --resolution 600x400"));
+        std::thread::sleep(Duration::from_millis(700));
+        send(&child, "-INT");
+        let (code, text) = end(child);
+        assert_eq!(code, Some(130), "{text}");
+        let image = folder.image("out.exr");
+        assert_eq!(image.metadata["etendue.spp"], "0", "the first pass was too quick for this test");
+        assert!(!folder.path("state").exists());
+        // Nor can its sums be merged.
+        folder.run("merge out.exr out.exr -o merged.exr").expect(2).says("it holds no complete pass");
+    }
+}

@@ -1,0 +1,15 @@
+//! The command as a user runs it: the real program in temporary folders.
+
+mod arguments;
+mod bad_files;
+mod bad_scenes;
+mod checkpoint;
+mod degenerate;
+mod listing;
+mod outputs;
+mod parts;
+mod real_scenes;
+mod stand_ins;
+mod statistics;
+mod support;
+mod tools;

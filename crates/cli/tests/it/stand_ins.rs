@@ -1,0 +1,112 @@
+//! Names that pbrt knows and that are still to come: a warning with the place and the stand-in, and an image.
+
+use crate::support::{Folder, mean, scene};
+
+/// Renders with a stand-in; the warning stands at `line:column`.
+#[track_caller]
+fn accept(options: &str, world: &str, place: &str, says: &[&str]) {
+    let folder = Folder::with_scene(&scene(options, world));
+    let mut run = folder.run("render scene.pbrt -o out.exr --no-progress").expect(0);
+    run = run.says(&format!("scene.pbrt:{place}: warning: "));
+    for text in says {
+        run = run.says(text);
+    }
+    assert_eq!(run.stderr.matches("warning").count(), 1, "{}", run.stderr);
+    let image = folder.image("out.exr");
+    assert_eq!((image.width, image.height), (8, 6));
+}
+
+const SPHERE: &str = "Translate 0 0 3\nShape \"sphere\"";
+
+/// Integrators, with the parameters that pbrt gives them.
+#[test]
+fn integrators() {
+    let path = "\"path\" stands in for it";
+    for entity in [
+        "\"bdpt\" \"integer maxdepth\" 3 \"bool visualizestrategies\" false \"bool visualizeweights\" false",
+        "\"mlt\" \"integer maxdepth\" 3 \"integer bootstrapsamples\" 10 \"integer chains\" 4 \"float sigma\" 0.1",
+        "\"sppm\" \"float radius\" 0.1 \"integer photonsperiteration\" 100 \"integer seed\" 3",
+        "\"lightpath\" \"integer maxdepth\" 3",
+        "\"ambientocclusion\" \"bool cossample\" true \"float maxdistance\" 3",
+        "\"function\" \"string function\" \"step\"",
+    ] {
+        let name = entity.split('"').nth(1).expect("a name");
+        accept(&format!("Integrator {entity}"), SPHERE, "4:12", &[&format!("\"{name}\""), path]);
+    }
+}
+
+/// Other names of the path tracer are no reason to warn.
+#[test]
+fn aliases_are_silent() {
+    for entity in [
+        "\"volpath\" \"integer maxdepth\" 3 \"string lightsampler\" \"power\" \"bool regularize\" true",
+        "\"simplepath\" \"bool samplebsdf\" true \"bool samplelights\" true",
+        "\"randomwalk\"",
+    ] {
+        let folder = Folder::with_scene(&scene(&format!("Integrator {entity}"), SPHERE));
+        let run = folder.run("render scene.pbrt -o out.exr --no-progress").expect(0);
+        assert!(!run.stderr.contains("warning"), "{}", run.stderr);
+    }
+}
+
+/// On the command line, stand-ins take any parameters.
+#[test]
+fn integrator_arguments() {
+    let folder = Folder::with_scene(&scene("", SPHERE));
+    folder
+        .run("render scene.pbrt -o out.exr --integrator sppm:radius=0.1,maxdepth=3")
+        .expect(0)
+        .says("warning: the integrator \"sppm\"")
+        .says("\"path\" stands in for it");
+    assert!(folder.image("out.exr").metadata["etendue.integrator"].starts_with("path"));
+}
+
+/// Materials: grey instead.
+#[test]
+fn materials() {
+    for entity in [
+        "\"hair\" \"float eumelanin\" 0.3 \"float beta_m\" 0.2",
+        "\"measured\" \"string filename\" \"none.bsdf\"",
+        "\"subsurface\" \"rgb mfp\" [ 1 1 1 ] \"float scale\" 2",
+    ] {
+        accept("", &format!("Material {entity}\n{SPHERE}"), "7:10", &["grey \"diffuse\" stands in for it"]);
+    }
+}
+
+/// Shapes are left out; the others are there.
+#[test]
+fn shapes() {
+    let curve = "Shape \"curve\" \"point3 P\" [ 0 0 3 1 1 3 2 2 3 3 3 3 ] \"string type\" \"cylinder\" \"float width\" 1";
+    accept("", &format!("{curve}\n{SPHERE}"), "7:7", &["the shape \"curve\"", "left out"]);
+}
+
+/// Textures that other programs store.
+#[test]
+fn textures() {
+    let world = format!(
+        "Texture \"t\" \"spectrum\" \"ptex\" \"string filename\" \"none.ptx\"\n\
+         Material \"diffuse\" \"texture reflectance\" \"t\"\n{SPHERE}"
+    );
+    accept("", &world, "7:24", &["the texture \"ptex\"", "constant 0.5"]);
+}
+
+/// Cameras, sensors and accelerators.
+#[test]
+fn options() {
+    let lens = "Camera \"realistic\" \"string lensfile\" \"none.dat\" \"float aperturediameter\" 8 \"float focusdistance\" 3";
+    accept(lens, SPHERE, "4:8", &["\"perspective\" stands in for it"]);
+    let film = "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6 \"string sensor\" \"canon_eos_5d_mkiv\"";
+    accept(film, SPHERE, "4:60", &["\"cie1931\" stands in for it"]);
+    accept("Accelerator \"kdtree\" \"integer maxdepth\" 3", SPHERE, "4:13", &["\"bvh\" stands in for it"]);
+}
+
+/// Media are empty space, through which lights shine.
+#[test]
+fn media() {
+    let world = "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 9 9 9 ]\n\
+        AttributeBegin\nMediumInterface \"fog\" \"\"\nMaterial \"interface\"\nShape \"sphere\" \"float radius\" 2\n\
+        AttributeEnd\nTranslate 0 0 3\nShape \"sphere\"";
+    accept("", world, "7:17", &["participating media", "\"fog\"", "empty space"]);
+    let folder = Folder::with_scene(&scene("", world));
+    assert!(mean(&folder.render("out", "--spp 4")) > 0.0);
+}

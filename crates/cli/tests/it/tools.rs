@@ -1,0 +1,136 @@
+//! `compare` and `tonemap`.
+
+use etendue::image::Image;
+use etendue::io::images::write_image;
+
+use crate::support::{Folder, ROOM};
+
+/// A folder with two images of 8 x 4 pixels, `b` twice as bright as `a`.
+fn images() -> Folder {
+    let folder = Folder::new();
+    let pixels: Vec<[f32; 3]> = (0..32).map(|i| [0.1 + i as f32 / 64.0, 0.2, 0.3]).collect();
+    write_image(folder.path("a.exr"), &Image::rgb(8, 4, pixels.clone())).expect("written");
+    let twice = pixels.iter().map(|p| p.map(|v| 2.0 * v)).collect();
+    write_image(folder.path("b.exr"), &Image::rgb(8, 4, twice)).expect("written");
+    write_image(folder.path("small.exr"), &Image::rgb(4, 4, vec![[0.5; 3]; 16])).expect("written");
+    folder
+}
+
+/// An image does not differ from itself.
+#[test]
+fn equal_images() {
+    let folder = images();
+    let run = folder.run("compare a.exr a.exr --json").expect(0);
+    assert_eq!(run.stderr, "");
+    let json = run.json();
+    for key in ["mse", "rmse", "relmse", "mape", "smape", "flip"] {
+        assert_eq!(json[key], 0.0, "{key}");
+    }
+    assert_eq!(json["mean_ratio"], 1.0);
+    assert_eq!(json["pixels"], 32);
+    // Infinite, which JSON cannot say.
+    assert!(json["psnr"].is_null());
+    let text = folder.run("compare a.exr a.exr").expect(0).stdout;
+    assert!(text.lines().any(|line| line.split_whitespace().eq(["mse", "0.000000"])), "{text}");
+}
+
+/// Known differences have known measures.
+#[test]
+fn different_images() {
+    let folder = images();
+    let json = folder.run("compare b.exr a.exr --json").expect(0).json();
+    let number = |key: &str| json[key].as_f64().expect("a number");
+    assert!((number("mean_ratio") - 2.0).abs() < 1e-5, "{json}");
+    assert!((number("rmse").powi(2) - number("mse")).abs() < 1e-6, "{json}");
+    assert!(number("flip") > 0.0 && number("psnr").is_finite(), "{json}");
+    let json = folder.run("compare b.exr a.exr --json --scale-reference 2").expect(0).json();
+    assert_eq!(json["mse"], 0.0);
+}
+
+/// Pictures of the difference, of all kinds.
+#[test]
+fn difference_maps() {
+    let folder = images();
+    for kind in ["flip", "absolute", "relative"] {
+        folder.run(&format!("compare b.exr a.exr -o {kind}.png --map {kind}")).expect(0);
+        assert_eq!(folder.image(&format!("{kind}.png")).width, 8);
+    }
+}
+
+/// What cannot be compared.
+#[test]
+fn refused_comparisons() {
+    let folder = images();
+    folder.write("text.exr", "this is text");
+    let before = folder.files();
+    folder
+        .run("compare a.exr small.exr -o map.png")
+        .expect(2)
+        .says("a.exr and small.exr")
+        .says("8 x 4 against 4 x 4");
+    folder.run("compare a.exr none.exr").expect(2).says("none.exr");
+    folder.run("compare none.exr a.exr --json").expect(2).says("none.exr");
+    folder
+        .run("compare a.exr text.exr")
+        .expect(2)
+        .says("text.exr")
+        .says("the contents are not those of a `exr` file");
+    folder.run("compare a.exr b.exr -o map.gif").expect(2).says("map.gif");
+    folder.run("compare a.exr b.exr -o none/map.png").expect(2).says("there is no folder none");
+    folder.run("compare a.exr .").expect(2).says("folder");
+    folder.run("compare a.exr").expect(2);
+    assert_eq!(folder.files(), before);
+}
+
+/// All operators write all formats, in the range of a display.
+#[test]
+fn tonemapping() {
+    let folder = Folder::with_scene(ROOM);
+    let radiance = folder.render("a", "--spp 8");
+    for operator in ["clamp", "maximum", "exponential", "reinhard"] {
+        folder
+            .run(&format!("tonemap a.exr -o {operator}.png -o {operator}.exr --operator {operator}"))
+            .expect(0);
+        let mapped = folder.image(&format!("{operator}.exr")).rgb_pixels().expect("colour");
+        assert!(mapped.iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "{operator}");
+        assert_eq!(folder.image(&format!("{operator}.png")).width, radiance.width);
+        assert!(mapped.iter().flatten().any(|v| *v > 0.05), "{operator}");
+    }
+    folder.run("tonemap a.exr -o dark.exr --exposure -3").expect(0);
+    folder.run("tonemap a.exr -o plain.exr").expect(0);
+    let sum = |name: &str| -> f64 {
+        folder.image(name).rgb_pixels().expect("colour").iter().flatten().map(|v| f64::from(*v)).sum()
+    };
+    assert!(sum("dark.exr") < 0.5 * sum("plain.exr"));
+    folder.run("tonemap a.exr -o dithered.png --dither").expect(0);
+    folder.run("tonemap a.exr -o key.png --operator reinhard --key 0.3 --white 2").expect(0);
+}
+
+/// What cannot be shown.
+#[test]
+fn refused_tonemapping() {
+    let folder = images();
+    folder.write("text.png", "this is text");
+    folder.write("text", "this is text");
+    let mut depth = Image::new(2, 2);
+    depth.set_channel("depth.Z", vec![1.0; 4]);
+    write_image(folder.path("depth.exr"), &depth).expect("written");
+    let before = folder.files();
+    folder.run("tonemap text.png -o out.png").expect(2).says("text.png");
+    folder.run("tonemap text -o out.png").expect(2).says("text: no known picture format");
+    folder.run("tonemap none.exr -o out.png").expect(2).says("none.exr");
+    folder.run("tonemap . -o out.png").expect(2).says("folder");
+    folder
+        .run("tonemap depth.exr -o out.png")
+        .expect(2)
+        .says("depth.exr: there are no channels R, G, B or Y");
+    folder.run("tonemap a.exr -o out.gif").expect(2).says("out.gif");
+    folder.run("tonemap a.exr -o none/out.png").expect(2).says("there is no folder none");
+    folder.run("tonemap a.exr").expect(2).says("--output");
+    folder.run("tonemap a.exr -o out.png --operator sepia").expect(2).says("reinhard");
+    folder
+        .run("tonemap a.exr -o out.png --operator reinhard --key 0")
+        .expect(2)
+        .says("a positive number is needed");
+    assert_eq!(folder.files(), before);
+}
