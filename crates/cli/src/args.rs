@@ -19,7 +19,7 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Render a scene
-    Render(RenderArguments),
+    Render(Box<RenderArguments>),
     /// Tell what a scene holds
     Info(InfoArguments),
     /// Show what scene files may name: parameters, units, defaults

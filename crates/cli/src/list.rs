@@ -1,5 +1,4 @@
 //! `etendue list`: what scene files may name, from the tables of the code.
-#![expect(clippy::print_stdout, reason = "this module is the way to standard output")]
 
 use std::io::Write;
 

@@ -148,8 +148,8 @@ fn references() {
     );
     refuse_world(
         "MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [ \"a\" \"a\" ] \"float amount\" 0.5",
-        (1, 43),
-        &["\"a\""],
+        (1, 19),
+        &["the mixture contains itself"],
     );
 }
 
