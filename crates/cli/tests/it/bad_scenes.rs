@@ -268,7 +268,7 @@ fn files_that_are_no_text() {
     folder.write("noise.pbrt", &noise);
     let run = folder.run("render noise.pbrt -o out.exr").expect(2);
     assert!(run.stderr.lines().count() < 300, "{}", run.stderr.lines().count());
-    folder.write("cut.pbrt.gz", &[0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 3, 1, 2, 3]);
+    folder.write("cut.pbrt.gz", [0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 3, 1, 2, 3]);
     folder.run("render cut.pbrt.gz -o out.exr").expect(2).says("cannot decompress `cut.pbrt.gz`");
     assert_eq!(folder.files(), ["cut.pbrt.gz", "latin1.pbrt", "noise.pbrt", "wide.pbrt"]);
 }

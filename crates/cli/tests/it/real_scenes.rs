@@ -1,4 +1,5 @@
 //! Scenes that others made, which lie beside the repository.
+#![expect(clippy::print_stdout, reason = "tests that are skipped say so")]
 
 use std::path::PathBuf;
 

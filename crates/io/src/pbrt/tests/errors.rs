@@ -57,7 +57,7 @@ fn directives_in_the_wrong_place() {
         let expected = format!("1:12: error: `{directive}` must stand before `WorldBegin`");
         check_problem(&format!("WorldBegin {directive} \"x\""), &expected);
     }
-    check_problem("WorldBegin WorldBegin", "1:12: error: `WorldBegin` must stand before `WorldBegin`");
+    check_problem("WorldBegin WorldBegin", "1:12: error: there is a `WorldBegin` before this one");
     check_problem(
         "WorldBegin TransformTimes 0 1",
         "1:12: error: `TransformTimes` must stand before `WorldBegin`",
