@@ -73,7 +73,7 @@ impl Experiment {
         let counts = powers_of_two(max_samples);
         let by_chance = Estimator { sampler: SamplerChoice::Independent, lights: LightChoice::Scattering };
         let by_sampling = |sampler| Estimator { sampler, lights: LightChoice::Lights };
-        let estimators = std::iter::once(by_chance).chain(SamplerChoice::ALL.map(by_sampling));
+        let estimators = SamplerChoice::ALL.map(by_sampling).into_iter().chain([by_chance]);
         Self { scene, estimators: estimators.map(|e| (e, counts.clone())).collect() }
     }
 
@@ -342,12 +342,11 @@ impl ConvergencePanel {
         }
     }
 
-    /// The law of independent samples, drawn from the first point of the first curve on.
+    /// The law of independent samples, above all curves.
     fn guide(&self) -> Option<Series> {
-        let [_, first] = *self.curves.first()?.points().first()?;
+        let first = self.curves.iter().filter_map(|c| Some(c.points().first()?[1])).reduce(f64::max)?;
         let last = self.curves.iter().flat_map(|c| c.counts.last()).max()?;
         let end = f64::from(*last);
-        // A little above the first curve, so that it hides nothing.
         let start = 1.4 * first / self.mean;
         let points = vec![[1.0, start], [end, start / end.sqrt()]];
         Some(Series { name: "slope −1/2".to_owned(), points, mark: Mark::Dashes })

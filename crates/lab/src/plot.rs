@@ -1,5 +1,7 @@
 //! Log-log plots as SVG.
 
+use std::cell::RefCell;
+
 use plotters::coord::Shift;
 use plotters::coord::combinators::IntoLogRange;
 use plotters::prelude::*;
@@ -113,8 +115,8 @@ impl Panel {
             .max_light_lines(0)
             .x_labels(MAX_LINES)
             .y_labels(MAX_LINES)
-            .x_label_formatter(&|v| label(*v))
-            .y_label_formatter(&|v| label(*v))
+            .x_label_formatter(&once(label))
+            .y_label_formatter(&once(label))
             .draw()
             .expect(IN_MEMORY);
         for (index, series) in self.series.iter().enumerate() {
@@ -180,6 +182,17 @@ impl Corner {
 
 fn font(size: u32) -> FontDesc<'static> {
     ("sans-serif", size).into_font()
+}
+
+/// A formatter that leaves out a label that repeats the one before: the library lists powers of ten twice.
+fn once(format: impl Fn(f64) -> String) -> impl Fn(&f64) -> String {
+    let last = RefCell::new(String::new());
+    move |value| {
+        let text = format(*value);
+        let is_repeated = *last.borrow() == text;
+        last.replace(text.clone());
+        if is_repeated { String::new() } else { text }
+    }
 }
 
 /// The number of a grid line if it is 1, 2 or 5 times a power of ten: more would run into each other.
