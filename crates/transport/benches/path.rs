@@ -129,6 +129,7 @@ fn path(bencher: Bencher, sampler: SamplerKind) {
     });
     let rgb = film.develop().rgb_pixels().expect("a film has colour");
     let mean = rgb.iter().flatten().sum::<f32>() / (3 * rgb.len()) as f32;
-    // A small picture of one sample is noisy; a black one or one of another scene is found out.
-    assert!((0.1..0.4).contains(&mean), "mean radiance {mean}");
+    // What other renderers find: 0.2437, 0.2248, 0.1936. A small picture of one sample is noisy.
+    let tolerance = if is_measured { 0.02 } else { 0.25 };
+    assert!((mean / 0.2207 - 1.0).abs() < tolerance, "mean radiance {mean}");
 }
