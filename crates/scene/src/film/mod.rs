@@ -20,12 +20,14 @@ pub use exact_sum::ExactSum;
 pub use settings::{AovSpace, FilmKind, FilmSettings, PixelBounds};
 pub use sums::{FilmSums, MergeError, SampleFaults, SumsError};
 
-/// Position of the colour and of its squared luminance among the values of a pixel; extra channels follow.
+/// Position of the colour among the values of a pixel and of the sums of w², w² Y and w² Y² that tell the variance
+/// (w the weight, Y the luminance of a sample); extra channels follow.
 const N_COLOR: usize = 3;
-const SQUARE: usize = N_COLOR;
-const FIRST_EXTRA: usize = SQUARE + 1;
-/// Name of the squared luminance, which images do not show.
-const SQUARE_NAME: &str = "luminance squared";
+const MOMENTS: Range<usize> = N_COLOR..N_COLOR + 3;
+const FIRST_EXTRA: usize = MOMENTS.end;
+/// Names of what every film has, in its order. Images do not show the moments.
+const CANONICAL_NAMES: [&str; FIRST_EXTRA] =
+    ["R", "G", "B", "weight squared", "weighted luminance", "weighted luminance squared"];
 
 /// Features of the first surface that a camera ray meets, for the channels of a `gbuffer` film.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -99,7 +101,7 @@ impl FilmLayout {
 
     /// Names of the values of a pixel, in their order.
     fn channel_names(&self, settings: &FilmSettings) -> Vec<String> {
-        let mut names: Vec<String> = ["R", "G", "B", SQUARE_NAME].map(str::to_owned).to_vec();
+        let mut names: Vec<String> = CANONICAL_NAMES.map(str::to_owned).to_vec();
         names.extend(Features::CHANNELS.iter().take(self.n_features).map(|name| (*name).to_owned()));
         names.extend((0..self.n_buckets).map(|bucket| settings.bucket_name(bucket)));
         for layer in &self.layers {
@@ -152,7 +154,11 @@ impl FilmTile<'_> {
             self.sums.faults.saturated += u64::from(ExactSum::saturates(term));
             *sum += ExactSum::of(term);
         }
-        values[SQUARE] += ExactSum::of(luminance * luminance * weight);
+        let mut moment = weight * weight;
+        for sum in &mut values[MOMENTS] {
+            *sum += ExactSum::of(moment);
+            moment *= luminance;
+        }
 
         let extra = &mut values[FIRST_EXTRA..];
         let (features, extra) = extra.split_at_mut(self.layout.n_features);

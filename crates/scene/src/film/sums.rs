@@ -5,7 +5,7 @@ use std::ops::Range;
 use etendue_image::{Channel, Image};
 
 use super::settings::PixelBounds;
-use super::{ExactSum, N_COLOR, SQUARE, SQUARE_NAME};
+use super::{CANONICAL_NAMES, ExactSum, MOMENTS, N_COLOR};
 
 /// What went wrong while samples were added.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -242,7 +242,6 @@ impl FilmSums {
     /// # Errors
     /// If there are none, or they do not fit the pixels.
     pub fn from_image(image: &Image, bounds: PixelBounds, luminance: [f32; 3]) -> Result<Self, SumsError> {
-        let weight_prefix = format!("{SUM_PREFIX}weight.");
         let mut names: Vec<String> = Vec::new();
         for channel in &image.channels {
             let Some(name) = channel.name.strip_prefix(SUM_PREFIX).and_then(|n| n.rsplit_once('.')) else {
@@ -254,27 +253,32 @@ impl FilmSums {
         }
         // A file may order channels by name; the colour comes first here.
         names
-            .sort_by_key(|name| CANONICAL_FIRST.iter().position(|first| first == name).unwrap_or(usize::MAX));
-        if names.len() < CANONICAL_FIRST.len() || bounds.n_pixels() != image.width * image.height {
+            .sort_by_key(|name| CANONICAL_NAMES.iter().position(|first| first == name).unwrap_or(usize::MAX));
+        if !names.iter().map(String::as_str).take(CANONICAL_NAMES.len()).eq(CANONICAL_NAMES)
+            || bounds.n_pixels() != image.width * image.height
+        {
             return Err(SumsError);
         }
         let mut sums = Self::new(bounds, names, luminance);
-        join_channel(image, &weight_prefix, sums.weights.iter_mut());
+        join_channel(image, "weight", sums.weights.iter_mut());
         let stride = sums.stride();
         for (index, name) in sums.names.iter().enumerate() {
-            let prefix = format!("{SUM_PREFIX}{name}.");
-            join_channel(image, &prefix, sums.values.iter_mut().skip(index).step_by(stride));
+            join_channel(image, name, sums.values.iter_mut().skip(index).step_by(stride));
         }
         Ok(sums)
     }
 
     /// The image: the weighted mean of every channel, and `variance.Y`, the variance of the mean luminance as
     /// estimated from the samples (0 where there are fewer than two). Pixels without samples are black.
+    ///
+    /// The mean is a quotient, m = sum of w Y / sum of w, of variance n / (n - 1) sum of w² (Y - m)² / (sum of w)² (Cochran
+    /// 1977, "Sampling Techniques", chapter 6). With equal weights that is the usual estimate, without bias; filters with
+    /// negative lobes raise it.
     #[must_use]
     pub fn develop(&self) -> Image {
         let mut image = Image::new(self.bounds.width() as usize, self.bounds.height() as usize);
         for (index, name) in self.names.iter().enumerate() {
-            if index != SQUARE {
+            if !MOMENTS.contains(&index) {
                 image.channels.push(self.mean_channel(name.clone(), index));
             }
         }
@@ -299,11 +303,12 @@ impl FilmSums {
             if n < 2.0 || weight == 0.0 {
                 return 0.0;
             }
-            let values = &self.values[index * stride..];
+            let values = &self.values[index * stride..(index + 1) * stride];
             let mean: f64 =
                 (0..N_COLOR).map(|c| f64::from(self.luminance[c]) * values[c].value() / weight).sum();
-            let mean_square = values[SQUARE].value() / weight;
-            ((mean_square - mean * mean).max(0.0) / (n - 1.0)) as f32
+            let [m0, m1, m2] = std::array::from_fn(|power| values[MOMENTS][power].value());
+            let deviations = (m2 - 2.0 * mean * m1 + mean * mean * m0).max(0.0);
+            (n / (n - 1.0) * deviations / (weight * weight)) as f32
         };
         Channel {
             name: "variance.Y".to_owned(),
@@ -334,9 +339,6 @@ impl FilmSums {
     }
 }
 
-/// The channels that every film has, in their order.
-const CANONICAL_FIRST: [&str; 4] = ["R", "G", "B", SQUARE_NAME];
-
 fn split_channel(name: &str, sums: impl Iterator<Item = ExactSum>) -> Vec<Channel> {
     let mut terms: [Vec<f32>; N_TERMS] = Default::default();
     for sum in sums {
@@ -353,8 +355,12 @@ fn split_channel(name: &str, sums: impl Iterator<Item = ExactSum>) -> Vec<Channe
         .collect()
 }
 
-fn join_channel<'s>(image: &Image, prefix: &str, targets: impl Iterator<Item = &'s mut ExactSum>) {
-    let parts: Vec<&Channel> = image.channels.iter().filter(|c| c.name.starts_with(prefix)).collect();
+fn join_channel<'s>(image: &Image, name: &str, targets: impl Iterator<Item = &'s mut ExactSum>) {
+    let is_part = |channel: &&Channel| {
+        let sum = channel.name.strip_prefix(SUM_PREFIX).and_then(|rest| rest.rsplit_once('.'));
+        sum.is_some_and(|(of, _)| of == name)
+    };
+    let parts: Vec<&Channel> = image.channels.iter().filter(is_part).collect();
     for (index, target) in targets.enumerate() {
         for part in &parts {
             *target += ExactSum::from_term(part.values[index]);
