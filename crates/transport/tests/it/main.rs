@@ -1,0 +1,17 @@
+//! The path tracer and the film against closed forms, against themselves and against the laws of estimation.
+//!
+//! Scenes are short texts. Statistical comparisons use the variance that the renders show; each also demands that it
+//! would have seen a small error. With `ETENDUE_SLOW=1` the studies run that need minutes.
+
+mod support;
+
+mod convergence;
+mod degenerate;
+mod determinism;
+mod furnace;
+mod layers;
+mod merging;
+mod radiometry;
+mod spectra;
+mod strategies;
+mod surfaces;
