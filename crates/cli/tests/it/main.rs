@@ -9,6 +9,7 @@ mod listing;
 mod outputs;
 mod parts;
 mod real_scenes;
+mod references;
 mod stand_ins;
 mod statistics;
 mod support;

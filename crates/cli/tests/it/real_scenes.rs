@@ -16,10 +16,24 @@ const SCENES: [&str; 8] = [
     "volumetric-caustic",
 ];
 
+/// The folder of scenes, or nothing where it is not there and not demanded.
+pub(crate) fn shared_scenes() -> Option<PathBuf> {
+    let root = scene_folder();
+    assert!(root.is_dir() || !is_demanded(), "there is no folder {}", root.display());
+    root.is_dir().then_some(root)
+}
+
+fn scene_folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes")
+}
+
+fn is_demanded() -> bool {
+    std::env::var_os("ETENDUE_REQUIRE_SHARED").is_some()
+}
+
 /// The scene files, or nothing where they are not there and not demanded.
 fn scene_files() -> Vec<(&'static str, PathBuf)> {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/scenes");
-    let demanded = std::env::var_os("ETENDUE_REQUIRE_SHARED").is_some();
+    let (root, demanded) = (scene_folder(), is_demanded());
     let find = |name: &'static str| {
         let names = ["scene-v4.pbrt".to_owned(), format!("{name}.pbrt")];
         let found = names.iter().map(|file| root.join(name).join(file)).find(|path| path.is_file());
