@@ -100,9 +100,9 @@ impl Watch {
             ShowProgress::Yes => ProgressDrawTarget::stderr_with_hz(5),
             ShowProgress::No => ProgressDrawTarget::hidden(),
         };
-        let n_passes = stop.passes.clone().filter(|pass| !film.holds_pass(*pass)).count() as u64;
+        let n_passes = film.sums().n_missing(&stop.passes);
         let n_pixels = film.settings().crop.n_pixels() as u64;
-        let bar = ProgressBar::with_draw_target(Some(n_passes * n_pixels), target);
+        let bar = ProgressBar::with_draw_target(Some(n_passes.saturating_mul(n_pixels)), target);
         // Where time or error end the render, the share of the passes says nothing.
         let template = match (time, stop.error) {
             (None, None) => "{percent:>3} % [{bar:30}] {msg}, {per_sec}, {elapsed} elapsed, {eta} left",

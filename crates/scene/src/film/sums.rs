@@ -129,6 +129,14 @@ impl FilmSums {
         self.passes.iter().map(|r| r.end - r.start).sum()
     }
 
+    /// Number of passes in a range that they do not hold.
+    #[must_use]
+    pub fn n_missing(&self, range: &Range<u64>) -> u64 {
+        let shared = |held: &Range<u64>| held.end.min(range.end).saturating_sub(held.start.max(range.start));
+        let n_wanted = range.end.saturating_sub(range.start);
+        n_wanted - self.passes.iter().map(shared).sum::<u64>()
+    }
+
     /// Notes complete passes.
     pub fn note_passes(&mut self, range: Range<u64>) {
         self.passes.push(range);

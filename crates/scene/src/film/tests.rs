@@ -535,3 +535,16 @@ fn bands_leave_spectral_channels_black() {
     let (_, spectral) = sums(&Wavelengths::sample_visible(0.5));
     assert!(spectral > 0.0);
 }
+
+/// How much of a render is left is known without counting its passes one by one.
+#[test]
+fn missing_passes_are_counted() {
+    let mut film = film(1, 1);
+    for pass in [0, 1, 2, 5] {
+        film.note_pass(pass);
+    }
+    assert_eq!(film.sums().n_missing(&(0..8)), 4);
+    assert_eq!(film.sums().n_missing(&(1..3)), 0);
+    assert_eq!(film.sums().n_missing(&(6..9)), 3);
+    assert_eq!(film.sums().n_missing(&(0..u64::MAX)), u64::MAX - 4);
+}
