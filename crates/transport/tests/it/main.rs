@@ -5,6 +5,7 @@
 
 mod support;
 
+mod bands;
 mod convergence;
 mod degenerate;
 mod determinism;

@@ -7,7 +7,7 @@ use etendue_scene::bsdf::fresnel::refract;
 use crate::support::{Setup, channel, expect_agreement, expect_mean, lit, render_passes};
 
 /// Moments over passes of the means of R, G and B.
-fn color_moments(setup: &Setup<'_>, name: &str, n_passes: u64) -> [Moments; 3] {
+pub(crate) fn color_moments(setup: &Setup<'_>, name: &str, n_passes: u64) -> [Moments; 3] {
     let scene = setup.scene(name);
     let mut moments = [Moments::new(); 3];
     for pass in 0..n_passes {
