@@ -121,6 +121,19 @@ fn known_but_missing_features_have_stand_ins() {
     warning_here(&Document { media: vec![fog], ..lit() }, "\"fog\" is rendered as empty space");
 }
 
+/// Red, green and blue tell nothing of the spectrum, so a film that records it says that it will stay black.
+#[test]
+fn spectral_films_warn_of_bands() {
+    let with = |word: &str| Document {
+        film: Some(here(Entity::new("spectral"))),
+        integrator: Some(Entity::new("path").with("wavelengths", strings(&[word]))),
+        ..lit()
+    };
+    warning_here(&with("bands"), "spectral channels stay black");
+    let _ = scene(&with("hero"));
+    let _ = scene(&Document { film: lit().film, ..with("bands") });
+}
+
 fn scene_of_bvh() {
     let accelerator = Some(here(Entity::new("bvh").with("splitmethod", strings(&["hlbvh"]))));
     let _ = scene(&Document { accelerator, ..lit() });
