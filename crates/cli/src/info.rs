@@ -19,7 +19,10 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<()> {
     if arguments.json {
         print(&description.to_string());
     } else {
-        print_lines("", &description);
+        // The warnings are on standard error already.
+        let mut facts = description;
+        facts.as_object_mut().map(|object| object.remove("warnings"));
+        print_lines("", &facts);
     }
     Ok(())
 }
@@ -109,7 +112,7 @@ const fn kind_name(light: &Light) -> &'static str {
     }
 }
 
-/// The same for people: a line for each value, with the path to it.
+/// A value for people: a line for each value, with the path to it.
 fn print_lines(prefix: &str, value: &Value) {
     match value {
         Value::Object(map) => {

@@ -1,5 +1,6 @@
 //! Where images go: what can be refused is refused before hours of work, and what was rendered is not lost.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use etendue::image::Image;
@@ -51,6 +52,19 @@ pub(crate) fn check_file(path: &Path) -> Result<()> {
 pub(crate) fn write_all(paths: &[PathBuf], write: impl Fn(&Path) -> WriteResult) -> Result<()> {
     let failures = failures(paths, write);
     if failures.is_empty() { Ok(()) } else { Err(Failure::Running(failures.join("\n"))) }
+}
+
+/// Refuses a file that would be overwritten by another one of the same command.
+pub(crate) fn check_distinct<'p>(paths: impl Iterator<Item = &'p PathBuf>) -> Result<()> {
+    let mut seen = HashSet::new();
+    for path in paths {
+        if !seen.insert(std::path::absolute(path).unwrap_or_else(|_| path.clone())) {
+            let message =
+                format!("{}: this file is named twice; one would overwrite the other", path.display());
+            return Err(Failure::Usage(message));
+        }
+    }
+    Ok(())
 }
 
 type WriteResult = std::result::Result<(), ImageError>;

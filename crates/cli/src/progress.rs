@@ -120,7 +120,8 @@ impl Watch {
         Self {
             bar,
             started: now,
-            deadline: time.map(|time| now + time),
+            // A time beyond what clocks count is no limit.
+            deadline: time.and_then(|time| now.checked_add(time)),
             checkpoint,
             last_checkpoint: Mutex::new(now),
             n_passes: AtomicU64::new(0),

@@ -82,9 +82,11 @@ fn prepare(arguments: &RenderArguments) -> Result<Job> {
     let expressions = PathExpressions::new(&layers).map_err(|error| Failure::Usage(error.to_string()))?;
     let names = expressions.names().to_vec();
     outputs::check_images(&arguments.outputs)?;
-    for path in arguments.checkpoint.iter().chain(&arguments.stats) {
+    let others = || arguments.checkpoint.iter().chain(&arguments.stats);
+    for path in others() {
         outputs::check_file(path)?;
     }
+    outputs::check_distinct(std::iter::once(&arguments.scene).chain(&arguments.outputs).chain(others()))?;
 
     let LoadedScene { document, mut scene, integrator, .. } =
         load(&arguments.scene, &overrides, expressions, arguments.quiet)?;

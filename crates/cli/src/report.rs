@@ -2,29 +2,34 @@
 //!
 //! A located message begins with `file:line:column: error:`, as compilers write it, so that editors find the place;
 //! the line itself follows with the place underlined, and then how to mend it.
-#![expect(clippy::print_stderr, reason = "this module is the way to standard error")]
 
 use std::fmt::Write;
 use std::io::IsTerminal;
+use std::io::Write as _;
 
 use etendue::scene::{Diagnostic, Diagnostics, Severity, Sources, Span};
 
 #[cfg(test)]
 mod tests;
 
+/// Writes to standard error. Where that is gone, nothing is left to say, but a render still goes on.
+fn say(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
 /// Says something that is neither error nor warning.
 pub(crate) fn note(message: &str) {
-    eprintln!("{}", printable(message));
+    say(&format!("{}\n", printable(message)));
 }
 
 /// Says that something failed.
 pub(crate) fn error(message: &str) {
-    eprintln!("{}: {}", style().word(Severity::Error), printable(message));
+    say(&format!("{}: {}\n", style().word(Severity::Error), printable(message)));
 }
 
 /// Says that something may not be as meant.
 pub(crate) fn warning(message: &str) {
-    eprintln!("{}: {}", style().word(Severity::Warning), printable(message));
+    say(&format!("{}: {}\n", style().word(Severity::Warning), printable(message)));
 }
 
 /// More messages than this of one severity help nobody.
@@ -43,12 +48,12 @@ pub(crate) fn diagnostics(diagnostics: &Diagnostics, sources: &Sources, quiet: b
         let count = &mut counts[usize::from(diagnostic.severity == Severity::Warning)];
         *count += 1;
         if *count <= MAX_MESSAGES {
-            eprint!("{}", format(diagnostic, sources, style));
+            say(&format(diagnostic, sources, style));
         }
     }
     let [errors, warnings] = counts;
     if errors > 0 || warnings > MAX_MESSAGES {
-        eprintln!("{}", summary(errors, warnings));
+        say(&format!("{}\n", summary(errors, warnings)));
     }
 }
 

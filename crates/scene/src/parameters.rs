@@ -58,6 +58,8 @@ pub struct BuildContext<'a> {
     pub spectrum_textures: HashMap<(String, SpectrumRole), SpectrumTexture>,
     /// Problems so far.
     pub diagnostics: Diagnostics,
+    /// How deep the textures so far are nested, by name.
+    pub(crate) texture_depths: HashMap<String, u32>,
     named_spectra: HashMap<String, Spectrum>,
 }
 
@@ -71,6 +73,7 @@ impl<'a> BuildContext<'a> {
             float_textures: HashMap::new(),
             spectrum_textures: HashMap::new(),
             diagnostics: Diagnostics::default(),
+            texture_depths: HashMap::new(),
             named_spectra: HashMap::new(),
         }
     }

@@ -77,6 +77,10 @@ fn outputs() {
     refuse(&["-o", "a.gif"], &["a.gif", ".exr, .png, .ppm, .pfm, .hdr"]);
     refuse(&["-o", "a"], &["a: images are written as"]);
     refuse(&["-o", "a.exr", "-o", "none/b.exr"], &["none/b.exr: there is no folder none"]);
+    for twice in [["-o", "b.exr", "-o", "./b.exr"], ["-o", "b.exr", "--checkpoint", "b.exr"]] {
+        refuse(&twice, &["b.exr: this file is named twice"]);
+    }
+    refuse(&["--stats", "scene.pbrt"], &["scene.pbrt: this file is named twice"]);
     refuse(&["--stats", "none/stats.json"], &["none/stats.json: there is no folder none"]);
     refuse(&["--checkpoint", "none/a.checkpoint"], &["none/a.checkpoint: there is no folder none"]);
 }

@@ -144,3 +144,43 @@ fn films() {
     let image = folder.render("out", "");
     assert_eq!(image.channels.iter().filter(|c| c.name.starts_with("S0.")).count(), 4);
 }
+
+/// Blocks may be nested as deep as a program cares to write them.
+#[test]
+fn deep_blocks() {
+    let n = 100_000;
+    let world = format!("{}Shape \"sphere\"\n{}", "AttributeBegin\n".repeat(n), "AttributeEnd\n".repeat(n));
+    assert!(brightness(&scene("", &world), "") > 0.0);
+}
+
+/// Textures may be nested, but are evaluated by recursion, so that there is a limit.
+#[test]
+fn deep_textures() {
+    let chain = |n: usize| {
+        let mut world = "Texture \"t0\" \"spectrum\" \"checkerboard\"\n".to_owned();
+        for i in 1..n {
+            let inner = format!("\"texture tex1\" \"t{}\"", i - 1);
+            world += &format!("Texture \"t{i}\" \"spectrum\" \"checkerboard\" {inner}\n");
+        }
+        world + &format!("Material \"diffuse\" \"texture reflectance\" \"t{}\"\nShape \"sphere\"", n - 1)
+    };
+    assert!(brightness(&scene("", &chain(100)), "--spp 4") > 0.0);
+    let folder = Folder::with_scene(&scene("", &chain(10_000)));
+    folder
+        .run("render scene.pbrt -o out.exr")
+        .expect(2)
+        .says("scene.pbrt:107:27: error: textures are nested in each other more than 100 deep")
+        .says("\n1 error\n");
+}
+
+/// Mixtures of mixtures are chosen from by a walk, which may be long.
+#[test]
+fn deep_mixtures() {
+    let mut world = "MakeNamedMaterial \"m0\" \"string type\" \"diffuse\"\n".to_owned();
+    for i in 1..5000 {
+        let parts = format!("\"string materials\" [ \"m{0}\" \"m{0}\" ]", i - 1);
+        world += &format!("MakeNamedMaterial \"m{i}\" \"string type\" \"mix\" {parts}\n");
+    }
+    world += "NamedMaterial \"m4999\"\nShape \"sphere\"";
+    assert!(brightness(&scene("", &world), "") > 0.0);
+}

@@ -96,7 +96,8 @@ fn info_with_warnings() {
     assert_eq!(run.stderr, "");
     let warnings = run.json()["warnings"].clone();
     assert_eq!(warnings[0]["place"], "scene.pbrt:7:16");
-    folder.run("info scene.pbrt").expect(0).says("scene.pbrt:7:16: warning: ");
+    let run = folder.run("info scene.pbrt").expect(0).says("scene.pbrt:7:16: warning: ");
+    assert!(!run.stdout.contains("raduis"), "{}", run.stdout);
     folder.write("scene.pbrt", scene("", "Shape \"shpere\""));
     let run = folder.run("info scene.pbrt --json").expect(2).says("unknown shape");
     assert_eq!(run.stdout, "");

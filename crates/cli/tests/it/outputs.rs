@@ -182,3 +182,17 @@ fn quiet() {
     let run = folder.run("render none.pbrt -q").expect(2);
     assert!(run.stderr.contains("none.pbrt"));
 }
+
+/// A render does not depend on anybody reading its messages.
+#[cfg(target_os = "linux")]
+#[test]
+fn full_standard_error() {
+    let folder = Folder::with_scene(&scene("Integrator \"bdpt\"", "Shape \"sphere\""));
+    let full = std::fs::File::options().write(true).open("/dev/full").expect("the device is there");
+    let status = folder.command(&["render", "scene.pbrt", "-o", "a.exr"]).stderr(full).status();
+    assert_eq!(status.expect("the program runs").code(), Some(0));
+    assert_eq!(folder.image("a.exr").width, 8);
+    let full = std::fs::File::options().write(true).open("/dev/full").expect("the device is there");
+    let status = folder.command(&["render", "none.pbrt"]).stderr(full).status();
+    assert_eq!(status.expect("the program runs").code(), Some(2));
+}

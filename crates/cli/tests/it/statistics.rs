@@ -63,6 +63,13 @@ fn time_limit() {
     // The number of samples still counts.
     let stats = statistics(&folder, "--time 100s --spp 2");
     assert_eq!(stats["spp"], 2);
+    // Numbers as large as can be written are no end, and no failure.
+    let stats = statistics(&folder, "--time 300000000000000h --spp 2");
+    assert_eq!(stats["spp"], 2);
+    let stats = statistics(&folder, "--time 100ms --spp 18446744073709551615");
+    assert!(stats["spp"].as_u64().is_some_and(|n| n > 0), "{stats}");
+    let stats = statistics(&folder, "--passes 18446744073709551613..18446744073709551615");
+    assert_eq!(stats["spp"], 2);
     // No pass fits: a part of a picture, and no failure.
     let stats = statistics(&folder, "--time 1ms --resolution 1000x1000");
     assert_eq!(stats["spp"], 0);

@@ -35,9 +35,17 @@ pub(super) struct Builder {
     medium_names: HashSet<String>,
     texture_names: HashSet<(bool, String)>,
     object_names: HashSet<String>,
-    /// Index of the object whose definition is open.
-    open_object: Option<usize>,
+    open_object: Option<OpenObject>,
     warned_of_transform_begin: bool,
+}
+
+/// The object whose definition is open.
+#[derive(Clone, Copy, Debug)]
+struct OpenObject {
+    /// Index of the object in the document.
+    index: usize,
+    /// Index of the block that its definition opened, if that is in this file and not in one that imports it.
+    block: Option<usize>,
 }
 
 /// State that an `Import` gives back unchanged.
@@ -46,6 +54,7 @@ pub(super) struct BeforeImport {
     state: GraphicsState,
     blocks: Vec<Block>,
     coordinate_systems: HashMap<String, [Transform; 2]>,
+    open_object: Option<OpenObject>,
 }
 
 /// Transforms and attributes.
@@ -154,7 +163,8 @@ impl Builder {
         if !self.object_names.insert(name.content.clone()) {
             self.diagnostics.error(name.span, format!("the object `{}` is defined twice", name.content));
         }
-        self.open_object = Some(self.document.objects.len());
+        let block = Some(self.blocks.len() - 1);
+        self.open_object = Some(OpenObject { index: self.document.objects.len(), block });
         self.document.objects.push(ObjectEntity {
             name: name.content,
             span: Some(name.span),
@@ -176,14 +186,17 @@ impl Builder {
         };
         self.state = self.blocks[index].state.clone();
         self.blocks.truncate(index);
-        if !self.blocks.iter().any(|block| block.kind == BlockKind::Object) {
+        if self.open_object.and_then(|object| object.block).is_some_and(|block| block >= index) {
             self.open_object = None;
         }
     }
 
     /// What to give to [`Self::import_end`].
     pub(super) fn import_begin(&mut self) -> BeforeImport {
+        let open_object = self.open_object;
+        self.open_object = open_object.map(|object| OpenObject { block: None, ..object });
         BeforeImport {
+            open_object,
             state: self.state.clone(),
             blocks: std::mem::take(&mut self.blocks),
             coordinate_systems: self.coordinate_systems.clone(),
@@ -195,6 +208,7 @@ impl Builder {
         self.report_open_blocks();
         self.state = before.state;
         self.blocks = before.blocks;
+        self.open_object = before.open_object;
         self.coordinate_systems = before.coordinate_systems;
     }
 
@@ -350,7 +364,7 @@ impl Builder {
             has_medium_interface: state.has_medium_interface,
         };
         match self.open_object {
-            Some(index) => self.document.objects[index].shapes.push(shape),
+            Some(object) => self.document.objects[object.index].shapes.push(shape),
             None => self.document.shapes.push(shape),
         }
     }

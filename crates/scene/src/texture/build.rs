@@ -5,7 +5,7 @@ use etendue_math::{Transform, Vector3};
 use etendue_spectrum::{ColorSpaceName, Spectrum};
 
 use crate::diagnostics::Diagnostics;
-use crate::document::{TextureEntity, TextureValue};
+use crate::document::{TextureEntity, TextureValue, Value};
 use crate::parameters::{BuildContext, ParameterSpec, Parameters, SpectrumRole};
 
 use super::noise::Octaves;
@@ -65,11 +65,37 @@ pub static SPECTRUM_TEXTURES: &[(&str, &[ParameterSpec])] = &[
     ("marble", marble::PARAMETERS),
 ];
 
+/// Levels of textures inside of each other. They are evaluated by recursion, so that there must be a limit.
+const MAX_DEPTH: u32 = 100;
+
+/// Levels of textures in this one. Too many are an error where the limit is passed, not again for those above.
+fn check_depth(entity: &TextureEntity, context: &mut BuildContext<'_>) -> Result<(), ()> {
+    let inner = entity.entity.parameters.iter().filter_map(|parameter| match &parameter.value {
+        Value::Texture(name) => context.texture_depths.get(name).copied(),
+        _ => None,
+    });
+    let depth = inner.max().unwrap_or(0) + 1;
+    context.texture_depths.insert(entity.name.clone(), depth.min(MAX_DEPTH + 1));
+    if depth == MAX_DEPTH + 1 {
+        let message = format!("textures are nested in each other more than {MAX_DEPTH} deep");
+        context.diagnostics.error(entity.entity.span, message);
+    }
+    if depth > MAX_DEPTH { Err(()) } else { Ok(()) }
+}
+
 impl Textures {
     /// Builds the texture of an entity and enters it under its name into the context. A texture that yields spectra is
     /// built for each role, since a colour becomes another spectrum as a reflectance than as light.
     pub fn define(&mut self, entity: &TextureEntity, context: &mut BuildContext<'_>) {
         let (name, placed) = (&entity.name, &entity.world_from_texture);
+        if check_depth(entity, context).is_err() {
+            context.float_textures.insert(name.clone(), FloatTexture::Constant(1.0));
+            for role in SpectrumRole::ALL {
+                let grey = SpectrumTexture::Constant(Spectrum::Constant(0.5));
+                context.spectrum_textures.insert((name.clone(), role), grey);
+            }
+            return;
+        }
         if entity.value == TextureValue::Float {
             let mut parameters = Parameters::new(&entity.entity, context);
             let texture = self.build_float(&mut parameters, placed);

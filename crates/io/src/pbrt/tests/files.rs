@@ -94,6 +94,21 @@ fn import_inside_an_object() {
     assert_eq!((document.objects[0].shapes.len(), document.shapes.len()), (2, 1));
 }
 
+/// Blocks that an imported file opens and closes leave the object of the importing file open.
+#[test]
+fn blocks_of_an_import_inside_an_object() {
+    let folder = folder(&[
+        (
+            "main.pbrt",
+            b"WorldBegin ObjectBegin \"o\" Import \"a.pbrt\" Shape \"disk\" ObjectEnd Shape \"cone\"",
+        ),
+        ("a.pbrt", b"AttributeBegin Shape \"sphere\" AttributeEnd Shape \"cylinder\""),
+    ]);
+    let (document, problems) = read_main(&folder);
+    assert!(problems.is_empty(), "{problems:?}");
+    assert_eq!((document.objects[0].shapes.len(), document.shapes.len()), (3, 1));
+}
+
 /// Errors lie in the file that has them.
 #[test]
 fn errors_name_their_file() {
