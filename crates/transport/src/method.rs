@@ -57,26 +57,8 @@ const COMING: &[&str] = &[
     "whitted",
 ];
 
-/// Parameters of pbrt's other integrators, which say nothing to the path tracer.
-const FOREIGN_PARAMETERS: &[&str] = &[
-    "radius",
-    "photonsperiteration",
-    "seed",
-    "bootstrapsamples",
-    "chains",
-    "mutationsperpixel",
-    "largestepprobability",
-    "sigma",
-    "cossample",
-    "maxdistance",
-    "visualizestrategies",
-    "visualizeweights",
-    "samplebsdf",
-    "samplelights",
-    "skipbad",
-    "function",
-    "imagefilename",
-];
+/// Parameters of pbrt's `simplepath` that choose what ours always does.
+const FOREIGN_PARAMETERS: &[&str] = &["samplebsdf", "samplelights"];
 
 /// The name of the method that [`method`] takes for a name: its own, that of the method it is another name of, or that
 /// of the one that stands in for it.
@@ -97,11 +79,8 @@ pub fn method(entity: &Entity, expressions: PathExpressions) -> (Option<Box<dyn 
         let message = format!("the integrator \"{name}\" is not available yet; \"path\" stands in for it");
         context.diagnostics.warning(entity.span, message);
     } else if name != "path" && !PATH_ALIASES.contains(&name) {
-        let known = INTEGRATORS
-            .iter()
-            .map(|m| m.name)
-            .chain(PATH_ALIASES.iter().copied())
-            .chain(COMING.iter().copied());
+        let own = INTEGRATORS.iter().map(|m| m.name);
+        let known = own.chain(PATH_ALIASES.iter().copied()).chain(COMING.iter().copied());
         let near = nearest_name(name, known);
         let error = context.diagnostics.error(entity.span, format!("unknown integrator \"{name}\""));
         error.with_help(match near {
@@ -112,10 +91,12 @@ pub fn method(entity: &Entity, expressions: PathExpressions) -> (Option<Box<dyn 
     }
     let mut p = Parameters::new(entity, &mut context);
     let settings = PathSettings::from_parameters(&mut p);
-    if name != "path" {
-        for foreign in FOREIGN_PARAMETERS {
-            p.ignore(foreign);
-        }
+    for foreign in FOREIGN_PARAMETERS {
+        p.ignore(foreign);
+    }
+    if is_coming {
+        // What another method is told says nothing to the one that stands in for it.
+        p.accept_all();
     }
     p.finish();
     if context.diagnostics.has_errors() {

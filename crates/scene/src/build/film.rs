@@ -27,7 +27,7 @@ const RGB: &[ParameterSpec] = &[
     spec!("whitebalance", "float", "0", "K", "temperature of the light that becomes white; 0 for none"),
     spec!("maxcomponentvalue", "float", "inf", "", "samples are scaled down to this largest component"),
     spec!("diagonal", "float", "35", "mm", "diagonal of the sensor, for lens files"),
-    spec!("savefp16", "bool", "true", "", "accepted; files hold what --half says"),
+    spec!("savefp16", "bool", "true", "", "accepted; channels are always written as 32-bit floats"),
 ];
 const GBUFFER: &[ParameterSpec] =
     &[spec!("coordinatesystem", "string", "camera", "", "space of positions and normals: camera or world")];
