@@ -103,40 +103,39 @@ fn unwritable_outputs() {
 #[cfg(unix)]
 #[test]
 fn renders_are_not_lost() {
+    use crate::support::signals::{end, send, wait_for};
     use std::os::unix::fs::symlink;
 
     let folder = folder();
-    std::fs::create_dir(folder.path("gone")).expect("made");
+    std::fs::create_dir(folder.path("there")).expect("made");
     std::fs::create_dir(folder.path("refuge")).expect("made");
-    symlink("gone", folder.path("link")).expect("linked");
-    // The folder vanishes during the render.
-    let start = |arguments: &[&str]| {
-        let child = folder
-            .command(
-                &[&["render", "scene.pbrt", "--time", "3s", "--resolution", "64x64"], arguments].concat(),
-            )
-            .env("TMPDIR", folder.path("refuge"))
-            .stderr(std::process::Stdio::piped())
-            .spawn()
-            .expect("the program starts");
-        std::thread::sleep(std::time::Duration::from_millis(1500));
+    // A folder that vanishes during the render.
+    let render = |outputs: &[&str]| {
+        symlink("there", folder.path("link")).expect("linked");
+        let arguments =
+            ["render", "scene.pbrt", "-q", "--spp", "1000000", "--checkpoint", "state", "--every", "0s"];
+        let mut command = folder.command(&[&arguments, outputs].concat());
+        command.env("TMPDIR", folder.path("refuge")).stderr(std::process::Stdio::piped());
+        let child = command.spawn().expect("the program starts");
+        wait_for(&folder.path("state"));
         std::fs::remove_file(folder.path("link")).expect("removed");
-        let output = child.wait_with_output().expect("it ends");
-        symlink("gone", folder.path("link")).expect("linked");
-        (output.status.code(), String::from_utf8(output.stderr).expect("text"))
+        send(&child, "-INT");
+        let ended = end(child);
+        std::fs::remove_file(folder.path("state")).expect("removed");
+        ended
     };
 
-    let (code, text) = start(&["-o", "link/a.exr", "-o", "b.png"]);
+    let (code, text) = render(&["-o", "link/a.exr", "-o", "b.png"]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("cannot write link/a.exr") && !text.contains("is kept"), "{text}");
-    assert!(folder.path("b.png").is_file());
+    assert_eq!(folder.image("b.png").width, 8);
 
-    let (code, text) = start(&["-o", "link/a.exr"]);
+    let (code, text) = render(&["-o", "link/a.exr"]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("cannot write link/a.exr") && text.contains("the image is kept in"), "{text}");
     let kept: Vec<_> = std::fs::read_dir(folder.path("refuge")).expect("there").flatten().collect();
     assert_eq!(kept.len(), 1);
-    assert_eq!(etendue::io::read_image(kept[0].path()).expect("an image").width, 64);
+    assert_eq!(etendue::io::read_image(kept[0].path()).expect("an image").width, 8);
 }
 
 /// Help and version are answers, not errors.

@@ -58,7 +58,8 @@ fn time_limit() {
     let folder = Folder::with_scene(ROOM);
     let stats = statistics(&folder, "--time 1500ms");
     let seconds = stats["seconds_render"].as_f64().expect("a number");
-    assert!((1.5..3.0).contains(&seconds), "{seconds}");
+    // A busy machine may need its time for the pass that has begun.
+    assert!((1.5..6.0).contains(&seconds), "{seconds}");
     assert!(stats["spp"].as_u64().is_some_and(|n| n > 1), "{stats}");
     // The number of samples still counts.
     let stats = statistics(&folder, "--time 100s --spp 2");

@@ -1,7 +1,7 @@
 //! A temporary folder, the program in it, and scenes to feed it.
 
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 
 use etendue::image::Image;
 use etendue::io::images::read_image;
@@ -71,6 +71,13 @@ impl Folder {
             stdout: String::from_utf8(output.stdout).expect("standard output is text"),
             stderr: String::from_utf8(output.stderr).expect("standard error is text"),
         }
+    }
+
+    /// Starts the program with arguments separated by blanks.
+    pub(crate) fn start(&self, arguments: &str) -> Child {
+        let arguments: Vec<&str> = arguments.split_whitespace().collect();
+        let mut command = self.command(&arguments);
+        command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program starts")
     }
 
     /// Renders `scene.pbrt` to `NAME.exr` with more arguments, successfully.
@@ -199,4 +206,58 @@ pub(crate) fn mean(image: &Image) -> f64 {
 /// True where slow tests shall run too.
 pub(crate) fn is_slow() -> bool {
     std::env::var_os("ETENDUE_SLOW").is_some()
+}
+
+/// Programs that run and are told to end.
+#[cfg(unix)]
+pub(crate) mod signals {
+    use std::path::Path;
+    use std::process::{Child, Command};
+    use std::time::{Duration, Instant};
+
+    /// Longer than anything takes, even on a busy machine.
+    const PATIENCE: Duration = Duration::from_secs(120);
+
+    /// Waits for something.
+    #[track_caller]
+    fn wait_until(what: &str, mut is_so: impl FnMut() -> bool) {
+        let begun = Instant::now();
+        while !is_so() {
+            assert!(begun.elapsed() < PATIENCE, "{what}");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    /// Waits for a file to appear.
+    #[track_caller]
+    pub(crate) fn wait_for(path: &Path) {
+        wait_until(&format!("{} does not appear", path.display()), || path.exists());
+    }
+
+    /// Waits until the program catches Ctrl-C, as Linux tells.
+    #[cfg(target_os = "linux")]
+    #[track_caller]
+    pub(crate) fn wait_for_handler(child: &Child) {
+        let status = format!("/proc/{}/status", child.id());
+        wait_until("the program does not catch signals", || {
+            let text = std::fs::read_to_string(&status).expect("the program runs");
+            let caught = text.lines().find_map(|line| line.strip_prefix("SigCgt:")).expect("a mask");
+            u64::from_str_radix(caught.trim(), 16).expect("a number") & 0b10 != 0
+        });
+    }
+
+    /// Sends a signal as a terminal would.
+    #[track_caller]
+    pub(crate) fn send(child: &Child, signal: &str) {
+        let id = child.id().to_string();
+        assert!(Command::new("kill").args([signal, &id]).status().expect("kill runs").success());
+    }
+
+    /// Waits for the end: the exit code and what was said.
+    #[track_caller]
+    pub(crate) fn end(mut child: Child) -> (Option<i32>, String) {
+        wait_until("the program does not end", || child.try_wait().expect("it can be asked").is_some());
+        let output = child.wait_with_output().expect("it has ended");
+        (output.status.code(), String::from_utf8(output.stderr).expect("text"))
+    }
 }
