@@ -11,6 +11,10 @@ use crate::report;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &StudyArguments) -> Result<()> {
+    // Before the work, so that it is not in vain.
+    fs::create_dir_all(&arguments.out).map_err(|error| {
+        Failure::Running(format!("cannot make the folder {}: {error}", arguments.out.display()))
+    })?;
     let (name, csv, svg, summary) = match arguments.name {
         StudyName::Convergence => {
             let settings = if arguments.quick {
@@ -38,8 +42,8 @@ pub(crate) fn run(arguments: &StudyArguments) -> Result<()> {
 
 fn write(folder: &Path, name: &str, text: &str) -> Result<()> {
     let path = folder.join(name);
-    let written = fs::create_dir_all(folder).and_then(|()| fs::write(&path, text));
-    written.map_err(|error| Failure::Running(format!("{}: {error}", path.display())))?;
+    fs::write(&path, text)
+        .map_err(|error| Failure::Running(format!("cannot write {}: {error}", path.display())))?;
     report::note(&path.display().to_string());
     Ok(())
 }

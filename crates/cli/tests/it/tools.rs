@@ -1,4 +1,4 @@
-//! `compare` and `tonemap`.
+//! `compare`, `tonemap` and `study`.
 
 use etendue::image::Image;
 use etendue::io::images::write_image;
@@ -133,4 +133,20 @@ fn refused_tonemapping() {
         .expect(2)
         .says("a positive number is needed");
     assert_eq!(folder.files(), before);
+}
+
+/// A study writes its table and its figure into a folder, the same for the same seed.
+#[test]
+fn studies() {
+    let folder = Folder::new();
+    for out in ["a", "b/deep"] {
+        let run = folder.run(&format!("study pixel --quick --out {out}")).expect(0);
+        assert_eq!(run.stdout, "");
+    }
+    assert_eq!(folder.read("a/pixel.csv"), folder.read("b/deep/pixel.csv"));
+    let svg = String::from_utf8(folder.read("a/pixel.svg")).expect("text");
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+    folder.write("file", "");
+    folder.run("study pixel --quick --out file").expect(1).says("cannot make the folder file");
+    folder.run("study everything").expect(2).says("convergence");
 }
