@@ -250,6 +250,10 @@ impl PathExpressions {
     }
 }
 
+/// How far each automaton has come along a path.
+#[derive(Clone, Copy, Debug)]
+pub struct PathPosition([StateID; MAX_EXPRESSIONS]);
+
 /// Follows a path from the eye and gathers what each expression selects.
 #[derive(Clone, Debug)]
 pub struct LayerRecorder<'e> {
@@ -272,6 +276,17 @@ impl LayerRecorder<'_> {
             self.states[index] = expression.automaton.next_state(expression.start, b'E');
             self.radiance[index] = Sampled::ZERO;
         }
+    }
+
+    /// How far the path has come, to go on from there several times.
+    #[must_use]
+    pub fn position(&self) -> PathPosition {
+        PathPosition(self.states)
+    }
+
+    /// Goes back to where the path was, and keeps what it brought.
+    pub fn return_to(&mut self, position: &PathPosition) {
+        self.states = position.0;
     }
 
     /// The path goes on through an event.

@@ -44,6 +44,8 @@ pub struct PathSettings {
     pub max_depth: u32,
     /// Paths of this many scattering events and more play roulette.
     pub roulette_depth: u32,
+    /// Directions in which a path goes on from each surface; 1 for path tracing, more to see why (SPEC PT-2).
+    pub branches: u32,
     /// Widens narrow lobes after the first wide scattering event: less noise, biased.
     pub regularize: bool,
     /// How lights are found.
@@ -57,6 +59,7 @@ impl Default for PathSettings {
         Self {
             max_depth: 5,
             roulette_depth: 1,
+            branches: 1,
             regularize: false,
             lights: LightStrategy::default(),
             wavelengths: WavelengthMode::default(),
@@ -80,6 +83,13 @@ impl PathSettings {
             default: "1",
             unit: "",
             doc: "scattering events before roulette may end a path",
+        },
+        ParameterSpec {
+            name: "branches",
+            kind: "integer",
+            default: "1",
+            unit: "",
+            doc: "directions in which a path goes on from each surface; more than 1 only to compare with",
         },
         ParameterSpec {
             name: "regularize",
@@ -116,6 +126,7 @@ impl PathSettings {
         let default = Self::default();
         let max_depth = p.count("maxdepth", default.max_depth);
         let roulette_depth = p.count("roulettedepth", default.roulette_depth);
+        let branches = p.count("branches", default.branches).max(1);
         let regularize = p.bool("regularize", false);
         let strategies = [
             ("both", LightStrategy::Both),
@@ -131,7 +142,7 @@ impl PathSettings {
         let wavelengths = p.choice("wavelengths", "hero", &modes);
         // Read where the scene is built.
         p.ignore("lightsampler");
-        Self { max_depth, roulette_depth, regularize, lights, wavelengths }
+        Self { max_depth, roulette_depth, branches, regularize, lights, wavelengths }
     }
 
     /// The entity that gives these settings.
@@ -180,6 +191,7 @@ struct LastScattering {
 }
 
 /// A random walk from the camera.
+#[derive(Clone, Copy)]
 struct Walk<'s> {
     settings: &'s PathSettings,
     ray: Ray,
@@ -236,17 +248,47 @@ impl<'s> Walk<'s> {
             if self.settings.lights != LightStrategy::Scattering && bsdf.lobes().has_non_specular() {
                 self.add_direct_light(tracer, &surface, &bsdf, path);
             }
-            let (u_component, u) = (path.sampler.next_1d(), path.sampler.next_2d());
-            let Some(sample) = bsdf.sample(surface.wo, u_component, u, TransportMode::Radiance, Lobes::ALL)
-            else {
-                break;
-            };
-            self.scatter(&surface, &sample, path.layers);
-            if !self.survives_roulette(path) {
+            if self.settings.branches > 1 {
+                return self.branch(tracer, &surface, &bsdf, path);
+            }
+            if !self.goes_on(&surface, &bsdf, path) {
                 break;
             }
         }
         self.radiance
+    }
+
+    /// Chooses where the path goes from a surface; `false` if it ends there.
+    fn goes_on(&mut self, surface: &Surface, bsdf: &Bsdf, path: &mut CameraPath<'_, '_>) -> bool {
+        let (u_component, u) = (path.sampler.next_1d(), path.sampler.next_2d());
+        let Some(sample) = bsdf.sample(surface.wo, u_component, u, TransportMode::Radiance, Lobes::ALL)
+        else {
+            return false;
+        };
+        self.scatter(surface, &sample, path.layers);
+        self.survives_roulette(path)
+    }
+
+    /// Goes on in several directions, each with its share of the throughput. The rays of a pixel then grow as the power
+    /// of the depth (SPEC PT-2), most of them where they matter least: for comparison.
+    fn branch(
+        self,
+        tracer: &Tracer<'_>,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        path: &mut CameraPath<'_, '_>,
+    ) -> Sampled {
+        let position = path.layers.position();
+        let mut radiance = self.radiance;
+        for _ in 0..self.settings.branches {
+            path.layers.return_to(&position);
+            let share = self.beta / self.settings.branches as f32;
+            let mut walk = Walk { beta: share, radiance: Sampled::ZERO, ..self };
+            if walk.goes_on(surface, bsdf, path) {
+                radiance += walk.follow(tracer, path);
+            }
+        }
+        radiance
     }
 
     /// Weight of light that scattering found, against the same light sampled from the last vertex.

@@ -6,6 +6,7 @@
 mod support;
 
 mod bands;
+mod branching;
 mod convergence;
 mod degenerate;
 mod determinism;

@@ -13,7 +13,7 @@ use crate::support::{
 };
 
 /// A box with an open front, light below the ceiling.
-fn open_box(objects: &str) -> String {
+pub(crate) fn open_box(objects: &str) -> String {
     let wall = |albedo: f64, corners: &str| {
         format!(
             "Material \"diffuse\" {} Shape \"bilinearmesh\" \"point3 P\" [{corners}]\n",
@@ -30,7 +30,7 @@ fn open_box(objects: &str) -> String {
     format!("{} {objects}", walls.concat())
 }
 
-fn ceiling_light(half_width: f64) -> String {
+pub(crate) fn ceiling_light(half_width: f64) -> String {
     let w = half_width;
     format!(
         "AttributeBegin AreaLightSource \"diffuse\" {} Material \"diffuse\" {}
@@ -47,9 +47,9 @@ fn ball(material: &str, x: f64) -> String {
     )
 }
 
-const FRONT: &str = "LookAt 0 0 -3.4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 42";
+pub(crate) const FRONT: &str = "LookAt 0 0 -3.4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 42";
 
-fn blocks(name: &str, world: &str, integrator: &str, n_passes: u64) -> Vec<Moments> {
+pub(crate) fn blocks(name: &str, world: &str, integrator: &str, n_passes: u64) -> Vec<Moments> {
     let setup = Setup { size: [24, 24], integrator, camera: FRONT, world, ..Setup::default() };
     block_moments(&setup.scene(name), n_passes, 3)
 }
@@ -150,7 +150,10 @@ fn roulette_keeps_the_mean() {
     for depth in [0, 1, 4] {
         expect_same_image(&format!("roulette after {depth}"), &render(depth), &without, 0.05);
     }
-    assert!(count_rays(&world, 0) < count_rays(&world, 100) / 2);
+    let rays = |depth: u32| {
+        count_rays(&world, &format!("\"integer maxdepth\" 12 \"integer roulettedepth\" {depth}"))
+    };
+    assert!(rays(0) < rays(100) / 2);
 }
 
 #[derive(Debug, Default)]
@@ -167,9 +170,9 @@ impl Observer for RayCounter {
     }
 }
 
-fn count_rays(world: &str, roulette_depth: u32) -> u64 {
-    let integrator = format!("\"integer maxdepth\" 12 \"integer roulettedepth\" {roulette_depth}");
-    let setup = Setup { size: [24, 24], integrator: &integrator, camera: FRONT, world, ..Setup::default() };
+/// Rays of all kinds in four passes.
+pub(crate) fn count_rays(world: &str, integrator: &str) -> u64 {
+    let setup = Setup { size: [24, 24], integrator, camera: FRONT, world, ..Setup::default() };
     let scene = setup.scene("rays");
     let mut film = Film::new(scene.film.clone(), Vec::new());
     let (integrator, _) = method(&scene.integrator, PathExpressions::default());
