@@ -91,6 +91,25 @@ fn accelerated_hits_are_those_of_brute_force() {
     }
 }
 
+/// SPEC EQ-3: x sees x' if and only if x' sees x. Segments that graze an edge within rounding may differ; of random ones
+/// hardly any does.
+#[test]
+fn visibility_is_symmetric() {
+    const N: u32 = 20_000;
+    let (geometry, _) = single(Shape::Triangles(soup(300, 0.3, 5)), Transform::IDENTITY, false);
+    let mut rng = Rng::new(3, 0);
+    let (mut n_blocked, mut n_different) = (0, 0);
+    for _ in 0..N {
+        let (a, b) = (point_in_cube(&mut rng, 1.0), point_in_cube(&mut rng, 1.0));
+        let there = geometry.occluded(&Ray::new(a, b - a), 1.0, &any);
+        let back = geometry.occluded(&Ray::new(b, a - b), 1.0, &any);
+        n_blocked += u32::from(there);
+        n_different += u32::from(there != back);
+    }
+    assert!(n_blocked > N / 10 && n_blocked < N - N / 10, "{n_blocked} of {N} are blocked");
+    assert!(n_different <= N / 10_000, "{n_different} of {N} differ");
+}
+
 /// Axis-parallel rays through a regular grid run along edges and box planes; they must hit all the same.
 #[test]
 fn rays_along_grid_lines_hit() {
