@@ -61,6 +61,11 @@ pub(crate) fn surface_error(p: Point3, size: f64) -> Vector3 {
     rounding_error(p) + Vector3::splat((size * RELATIVE) as f32)
 }
 
+/// Largest magnitude of a coordinate.
+pub(crate) fn largest_coordinate(points: &[DVec3]) -> f64 {
+    points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max)
+}
+
 /// Normal and tangents of a surface after an affine map: tangents are pushed forward, the normal is pulled back.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NormalMap {

@@ -11,6 +11,7 @@ use etendue_math::{Bounds3, Ray};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TraversalRay {
     pub(super) origin: [f32; 3],
+    pub(super) direction: [f32; 3],
     /// Reciprocal direction; infinite where the direction is 0.
     pub(super) inverse: [f32; 3],
     pub(super) near_origin: [f32; 3],
@@ -56,6 +57,7 @@ impl TraversalRay {
         let scale = 1.0 / direction[z];
         Some(Self {
             origin,
+            direction,
             inverse: direction.map(|d| 1.0 / d),
             near_origin: std::array::from_fn(|axis| origin[axis] + step[axis]),
             far_origin: std::array::from_fn(|axis| origin[axis] - step[axis]),

@@ -1,4 +1,4 @@
-use etendue_math::{Bounds3, Point3, Ray, Rng, Vector3};
+use etendue_math::{Bounds3, Point3, Ray, Rng, Vector3, offset_ray_origin};
 
 use super::build::Box3;
 use super::node::{Node, leaf, leaf_range};
@@ -165,6 +165,41 @@ fn closed_surfaces_are_watertight() {
             }
         }
     }
+}
+
+/// The same for rays that start on the surface, right beside edges and in corners, where the next wall is nearer than the
+/// error of the distance to it.
+#[test]
+fn rays_do_not_slip_through_corners() {
+    let (geometry, _) = single(Shape::Triangles(crate::test_support::cube()), Transform::IDENTITY, false);
+    let mut rng = Rng::new(31, 0);
+    let mut n_departures = 0;
+    for _ in 0..60_000 {
+        // A point of the inside that is 1 in one coordinate and near 1 or -1 in another or two.
+        let mut target = point_in_cube(&mut rng, 1.0);
+        for axis in [rng.next_below(3) as usize, rng.next_below(3) as usize] {
+            target[axis] = (1.0 - 10.0_f32.powf(-6.5 * rng.next_f32())).copysign(target[axis]);
+        }
+        let axis = rng.next_below(3) as usize;
+        target[axis] = 1.0_f32.copysign(target[axis]);
+        let ray = Ray::new(Point3::ORIGIN, target.as_vector().normalized());
+        let hit = geometry.intersect(&ray, f32::INFINITY, &any).expect("a wall");
+        let s = geometry.surface_point(&ray, &hit);
+        for _ in 0..4 {
+            let w = direction(&mut rng);
+            let w = if s.ng.dot_vector(w) > 0.0 { -w } else { w };
+            let departing = Ray::new(offset_ray_origin(s.p, s.p_error, s.ng, w), w);
+            let next = geometry.intersect(&departing, f32::INFINITY, &any);
+            assert!(next.is_some(), "{departing:?} leaves at {:?}", s.p);
+            assert!(
+                next.is_some_and(|next| next.primitive != hit.primitive),
+                "{departing:?} stays at {:?}",
+                s.p
+            );
+            n_departures += 1;
+        }
+    }
+    assert_eq!(n_departures, 240_000);
 }
 
 /// Triangles without area or with corners that are no numbers do not exist for rays.

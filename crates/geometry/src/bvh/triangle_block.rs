@@ -4,7 +4,11 @@
 //! if its three edge functions at the origin of the xy plane have one sign (Woop, Benthin and Wald 2013,
 //! "Watertight Ray/Triangle Intersection", JCGT 2(1)). Both triangles at an edge compute exactly opposite values.
 //! The sign of a difference of two rounded products is right unless it is 0, so that only then double precision
-//! decides. Hits whose t is not provably positive are refused (Pharr et al. 2023, section 6.8.7).
+//! decides. Likewise the sign of t: where it lies within its error (Pharr et al. 2023, section 6.8.7), double precision
+//! tells on which side of the triangle the ray starts. A ray that leaves a triangle by the error bound of its point does not
+//! meet it again, and one that starts right before another, in a corner, does not slip through.
+
+use glam::DVec3;
 
 use super::PrimitiveRef;
 use super::ray::TraversalRay;
@@ -80,13 +84,57 @@ impl TriangleBlock {
             lanes.t[l] = t;
             lanes.b1[l] = e1 * inverse;
             lanes.b2[l] = e2 * inverse;
-            hit[l] = u32::from(inside & (determinant != 0.0) & (t > 0.0) & (t < t_max));
+            hit[l] = u32::from(inside & (determinant != 0.0) & (t < t_max));
         }
         let mask = hit[0] | hit[1] << 1 | hit[2] << 2 | hit[3] << 3;
         if mask == 0 {
             return (0, lanes);
         }
-        (provable(mask, &sheared, &edges, &lanes, ray.shear.z), lanes)
+        self.decide_ahead(mask, ray, &sheared, &edges, lanes)
+    }
+
+    /// Keeps the hits that lie ahead of the origin.
+    #[inline]
+    fn decide_ahead(
+        &self,
+        mask: u32,
+        ray: &TraversalRay,
+        sheared: &Sheared,
+        edges: &[[f32; 4]; 3],
+        mut lanes: Lanes,
+    ) -> (u32, Lanes) {
+        let mut result = mask;
+        for lane in 0..4 {
+            if mask >> lane & 1 == 0 {
+                continue;
+            }
+            let t = lanes.t[lane];
+            let error = t_error(lane, sheared, edges, ray.shear.z);
+            if t.abs() <= error {
+                lanes.t[lane] = self.t_in_double(lane, ray);
+            }
+            let is_ahead = lanes.t[lane] > 0.0;
+            if !is_ahead {
+                result &= !(1 << lane);
+            }
+        }
+        (result, lanes)
+    }
+
+    /// Where the ray meets the plane of a triangle; 0 if it runs parallel. Only the sign of tiny values matters.
+    #[cold]
+    #[inline(never)]
+    fn t_in_double(&self, lane: usize, ray: &TraversalRay) -> f32 {
+        let vertex = |v: usize| {
+            DVec3::from_array(std::array::from_fn(|axis| self.vertices[v * 3 + axis][lane].into()))
+        };
+        let a = vertex(0);
+        let n = (vertex(1) - a).cross(vertex(2) - a);
+        let slope = n.dot(DVec3::from_array(ray.direction.map(f64::from)));
+        let height = n.dot(a - DVec3::from_array(ray.origin.map(f64::from)));
+        let t = if slope == 0.0 { 0.0 } else { height / slope };
+        // A tiny value must not lose its sign.
+        if t > 0.0 { (t as f32).max(f32::MIN_POSITIVE) } else { (t as f32).min(0.0) }
     }
 
     #[inline(always)]
@@ -125,18 +173,6 @@ fn edges_in_double(sheared: &Sheared, edges: &mut [[f32; 4]; 3]) {
     for (edges, (p, q)) in edges.iter_mut().zip([(b, c), (c, a), (a, b)]) {
         *edges = std::array::from_fn(|l| edge(p, q, l));
     }
-}
-
-/// Removes the hits whose t may be negative but for rounding.
-#[inline]
-fn provable(mask: u32, sheared: &Sheared, edges: &[[f32; 4]; 3], lanes: &Lanes, scale: f32) -> u32 {
-    let mut result = mask;
-    for lane in 0..4 {
-        if mask >> lane & 1 == 1 && lanes.t[lane] <= t_error(lane, sheared, edges, scale) {
-            result &= !(1 << lane);
-        }
-    }
-    result
 }
 
 /// Bound of the error of t (Pharr et al. 2023, section 6.8.7).

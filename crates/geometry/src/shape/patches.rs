@@ -45,11 +45,6 @@ fn mixed_derivative(c: &Corners) -> DVec3 {
     (c[0] + c[3]) - (c[1] + c[2])
 }
 
-/// Largest magnitude of a coordinate.
-fn largest_coordinate(c: &Corners) -> f64 {
-    c.iter().map(|corner| corner.abs().max_element()).fold(0.0, f64::max)
-}
-
 /// Area per unit of u and v.
 fn stretch(c: &Corners, u: f64, v: f64) -> f64 {
     derivative_u(c, v).cross(derivative_v(c, u)).length()
@@ -157,7 +152,7 @@ impl Patches {
         let (dpdu, dpdv) = (double::to_vector(dpdu), double::to_vector(dpdv));
         let mut surface = SurfacePoint {
             p: rounded,
-            p_error: double::surface_error(rounded, largest_coordinate(&c)),
+            p_error: double::surface_error(rounded, double::largest_coordinate(&c)),
             ng: double::to_normal(ng),
             ns: double::to_normal(ng),
             uv: self.uv(patch, uv),
@@ -244,7 +239,7 @@ impl Patches {
         let p = double::to_point(bilinear(&c, uv[0], uv[1]));
         ShapeSample {
             p,
-            p_error: double::surface_error(p, largest_coordinate(&c)),
+            p_error: double::surface_error(p, double::largest_coordinate(&c)),
             n: double::to_normal(self.geometric_normal(patch, &c, uv[0], uv[1]).0),
             uv: self.uv(patch, uv.map(|x| x as f32)),
             pdf_a,

@@ -121,7 +121,7 @@ impl Triangles {
         let rounded = double::to_point(p);
         let mut surface = SurfacePoint {
             p: rounded,
-            p_error: double::rounding_error(rounded),
+            p_error: double::surface_error(rounded, double::largest_coordinate(&corners)),
             ng,
             ns: ng,
             uv: self.uv(triangle, b),
@@ -208,7 +208,13 @@ impl Triangles {
         let corners = self.corners(triangle);
         let p = double::to_point(interpolate(&corners, b));
         let n = self.geometric_normal(triangle, &corners, [1.0 - b[0] - b[1], b[0], b[1]]).0;
-        ShapeSample { p, p_error: double::rounding_error(p), n, uv: self.uv(triangle, b), pdf_a }
+        ShapeSample {
+            p,
+            p_error: double::surface_error(p, double::largest_coordinate(&corners)),
+            n,
+            uv: self.uv(triangle, b),
+            pdf_a,
+        }
     }
 
     /// The triangle on the sphere of directions around `p`, where sampling by direction applies.
