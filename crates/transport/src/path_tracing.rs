@@ -42,7 +42,7 @@ pub enum LightStrategy {
 pub struct PathSettings {
     /// Most scattering events of a path; paths that would need more are lost, which darkens.
     pub max_depth: u32,
-    /// Paths of this many scattering events and more play roulette.
+    /// Paths of more scattering events than this play roulette.
     pub roulette_depth: u32,
     /// Directions in which a path goes on from each surface; 1 for path tracing, more to see why (SPEC PT-2).
     pub branches: u32,

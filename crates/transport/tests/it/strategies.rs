@@ -265,3 +265,55 @@ fn estimators_of_reflected_light() {
     expect_agreement("uniform and cosine", &uniform, &cosine, 0.02);
     assert!(cosine.variance() < 0.2 * uniform.variance());
 }
+
+/// The same through a window: the sky behind a portal is sampled through it, and met by paths that leave through it.
+#[test]
+fn techniques_agree_through_a_portal() {
+    let room = "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 1 -1  1 1 -1  -1 1 1  1 1 1]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  1 -1 1  -1 1 1  1 1 1]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -1  -1 -1 1  -1 1 -1  -1 1 1]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -4  1 -1 -4  -1 1 -4  1 1 -4]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -4  -1 -1 -1  -1 1 -4  -1 1 -1]
+        Shape \"bilinearmesh\" \"point3 P\" [1 -1 -4  1 -1 -1  1 1 -4  1 1 -1]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -4  1 -1 -4  -1 -1 -1  1 -1 -1]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 1 -4  1 1 -4  -1 1 -1  1 1 -1]\n";
+    let sky = |portal: &str| format!("{room} LightSource \"infinite\" {} {portal}", lit("L", 1.0));
+    let portal = "\"point3 portal\" [1 -1 -1  1 -1 1  1 1 1  1 1 -1]";
+    let render = |world: &str, lights: &str, n_passes| {
+        let integrator = format!("\"integer maxdepth\" 3 \"string lights\" \"{lights}\"");
+        blocks(&format!("window by {lights}"), world, &integrator, n_passes)
+    };
+    let open = render(&sky(""), "scattering", 200);
+    let both = render(&sky(portal), "both", 100);
+    expect_same_image("portal and open sky", &both, &open, 0.05);
+    expect_same_image("portal sampled", &render(&sky(portal), "lights", 100), &both, 0.05);
+    expect_same_image("portal met", &render(&sky(portal), "scattering", 200), &both, 0.05);
+}
+
+/// The same on a coarse mesh with interpolated normals, where geometric and shading side may differ: both techniques must
+/// draw the line in the same place.
+#[test]
+fn techniques_agree_on_shading_normals() {
+    let octahedron = "Shape \"trianglemesh\" \"point3 P\" [1 0 0  -1 0 0  0 1 0  0 -1 0  0 0 1  0 0 -1]
+        \"normal N\" [1 0 0  -1 0 0  0 1 0  0 -1 0  0 0 1  0 0 -1]
+        \"integer indices\" [0 2 4  2 1 4  1 3 4  3 0 4  2 0 5  1 2 5  3 1 5  0 3 5]";
+    for material in [
+        "\"diffuse\"",
+        "\"conductor\" \"float roughness\" 0.2",
+        "\"dielectric\" \"float roughness\" 0.2",
+        "\"coateddiffuse\" \"float roughness\" 0.2",
+        "\"diffusetransmission\"",
+    ] {
+        let objects = format!(
+            "AttributeBegin Rotate 30 1 2 3 Scale 0.7 0.7 0.7 Material {material} {octahedron} AttributeEnd\n"
+        );
+        let world = open_box(&(ceiling_light(0.6) + &objects));
+        let render = |lights: &str, n_passes| {
+            let integrator = format!("\"integer maxdepth\" 3 \"string lights\" \"{lights}\"");
+            blocks(&format!("{material} by {lights}"), &world, &integrator, n_passes)
+        };
+        expect_same_image(material, &render("both", 80), &render("scattering", 160), 0.08);
+    }
+}

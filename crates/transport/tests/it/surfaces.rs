@@ -166,3 +166,49 @@ fn regularization_calms_caustics() {
     assert!(calm.variance() < 0.5 * plain.variance(), "{plain:?} {calm:?}");
     assert!((calm.mean() / plain.mean() - 1.0).abs() < 0.5);
 }
+
+/// A light with holes: a sheet of alpha a sends out the share a of its light, whether it is sampled or met by chance, and lets
+/// the share 1 - a of the light behind it pass.
+#[test]
+fn lights_with_holes() {
+    let render = |alpha: f64, lights: &str, n_passes: u64| {
+        let world = format!(
+            "AttributeBegin Material \"diffuse\" {} Shape \"bilinearmesh\" \"point3 P\" [-9 -9 0  9 -9 0  -9 9 0  9 9 0] AttributeEnd
+            AttributeBegin Material \"diffuse\" {} AreaLightSource \"diffuse\" {} \"bool twosided\" true
+            Shape \"bilinearmesh\" \"float alpha\" {alpha} \"point3 P\" [-1 -1 1  1 -1 1  -1 1 1  1 1 1] AttributeEnd
+            AttributeBegin Material \"diffuse\" {} AreaLightSource \"diffuse\" {} \"bool twosided\" true
+            Shape \"bilinearmesh\" \"point3 P\" [-1 -1 2  1 -1 2  -1 1 2  1 1 2] AttributeEnd",
+            flat("reflectance", 0.5),
+            flat("reflectance", 0.0),
+            lit("L", 1.0),
+            flat("reflectance", 0.0),
+            lit("L", 3.0)
+        );
+        let integrator = format!("\"integer maxdepth\" 1 \"string lights\" \"{lights}\"");
+        let camera =
+            "LookAt 0 0 0.1  0 0 0  0 1 0 Camera \"orthographic\" \"float screenwindow\" [-0.1 0.1 -0.1 0.1]";
+        let setup =
+            Setup { size: [16, 16], integrator: &integrator, camera, world: &world, ..Setup::default() };
+        pixel_moments(&setup.film(&format!("holes of {alpha} by {lights}"), n_passes))
+    };
+    let square = |h: f64| {
+        crate::radiometry::polygon_irradiance(
+            0.0,
+            0.0,
+            &[[-1.0, -1.0, h], [1.0, -1.0, h], [1.0, 1.0, h], [-1.0, 1.0, h]],
+        )
+    };
+    // From the middle of the floor the far sheet hides behind the near one.
+    for alpha in [0.5, 0.2, 1.0] {
+        let irradiance = alpha * square(1.0) + (1.0 - alpha) * 3.0 * square(2.0);
+        for (lights, n_passes) in [("both", 128), ("lights", 128), ("scattering", 256)] {
+            let expected = 0.5 / std::f64::consts::PI * irradiance;
+            expect_mean(
+                &format!("alpha {alpha} by {lights}"),
+                &render(alpha, lights, n_passes),
+                expected,
+                0.06,
+            );
+        }
+    }
+}
