@@ -172,3 +172,33 @@ fn closed_rooms_stay_dark() {
         }
     }
 }
+
+/// Meshes with normals and texture coordinates that make no sense are finite still.
+#[test]
+fn senseless_vertex_data() {
+    let sky = format!("LightSource \"infinite\" {}", lit("L", 1.0));
+    let lamp = format!("LightSource \"point\" {} \"point3 from\" [1 1 -2]", lit("I", 1.0));
+    for data in [
+        "\"normal N\" [0 0 0  0 0 0  0 0 0]",
+        "\"normal N\" [0 0 1  0 0 -1  0 0 1]",
+        "\"normal N\" [1 0 0  -1 0 0  0 1 0]",
+        "\"normal N\" [1e-30 0 0  0 1e30 0  0 0 1]",
+        "\"point2 uv\" [0.5 0.5  0.5 0.5  0.5 0.5]",
+        "\"point2 uv\" [0 0  1e30 0  0 1e-30]",
+        "\"vector S\" [0 0 0  0 0 0  0 0 1]",
+    ] {
+        for material in
+            ["\"diffuse\"", "\"dielectric\"", "\"conductor\" \"float roughness\" 0.3", "\"coateddiffuse\""]
+        {
+            for emission in [String::new(), format!("AreaLightSource \"diffuse\" {}", lit("L", 1.0))] {
+                let world = format!(
+                    "{sky} {lamp} Texture \"t\" \"spectrum\" \"checkerboard\" Material {material} {emission}
+                    Shape \"trianglemesh\" \"point3 P\" [-1 -1 0  1 -1 0  0 1 0.2] {data}
+                    Translate 0 0.5 0.5 Material \"diffuse\" \"texture reflectance\" \"t\"
+                    Shape \"trianglemesh\" \"point3 P\" [-1 -1 0  1 -1 0  0 1 0.2] {data}"
+                );
+                assert!(!is_black(&render(data, &world, "\"integer maxdepth\" 4")));
+            }
+        }
+    }
+}

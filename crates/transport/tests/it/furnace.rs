@@ -303,3 +303,38 @@ fn rough_glass_by_every_technique() {
     expect_agreement("both and scattering", &moments[0], &moments[1], 0.03);
     expect_agreement("both and lights", &moments[0], &moments[2], 0.15);
 }
+
+/// Sheets in a uniform sky show the share of light that they reflect and let through: R + T where light passes, the mean of
+/// both parts where they are mixed.
+#[test]
+fn sheets_show_their_albedo() {
+    let camera = "LookAt 0 0 -3  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 20";
+    let veil = format!(
+        "Material \"diffusetransmission\" {} {}",
+        flat("reflectance", 0.3),
+        flat("transmittance", 0.4)
+    );
+    let mix = |amount: f64| {
+        format!(
+            "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" {} MakeNamedMaterial \"b\" \"string type\" \"diffuse\" {}
+            Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" {amount}",
+            flat("reflectance", 0.2),
+            flat("reflectance", 0.9)
+        )
+    };
+    let cases = [("veil", veil, 0.7), ("mix", mix(0.25), 0.375), ("mix of none", mix(0.0), 0.2)];
+    for (what, material, albedo) in &cases {
+        for lights in ["both", "scattering"] {
+            let world = format!(
+                "LightSource \"infinite\" {} {material}
+                Shape \"bilinearmesh\" \"point3 P\" [-9 -9 0  9 -9 0  -9 9 0  9 9 0]",
+                lit("L", 1.0)
+            );
+            let integrator = format!("\"integer maxdepth\" 3 \"string lights\" \"{lights}\"");
+            let setup =
+                Setup { size: [16, 16], integrator: &integrator, camera, world: &world, ..Setup::default() };
+            let name = format!("{what} by {lights}");
+            expect_mean(&name, &pixel_moments(&setup.film(&name, 128)), *albedo, 0.05);
+        }
+    }
+}

@@ -15,6 +15,7 @@ mod furnace;
 mod layers;
 mod merging;
 mod passes;
+mod pictures;
 mod radiometry;
 mod spectra;
 mod strategies;

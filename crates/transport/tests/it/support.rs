@@ -210,6 +210,9 @@ pub(crate) fn expect_agreement(what: &str, a: &Moments, b: &Moments, resolution:
 pub(crate) fn expect_same_image(what: &str, a: &[Moments], b: &[Moments], resolution: f64) {
     let (whole, blocks) = (a.len() - 1, a.len() - 1);
     for block in 0..blocks {
+        if a[block].mean() == 0.0 && b[block].mean() == 0.0 {
+            continue;
+        }
         expect_agreement(&format!("{what}, block {block}"), &a[block], &b[block], f64::INFINITY);
     }
     expect_agreement(what, &a[whole], &b[whole], resolution);

@@ -212,3 +212,49 @@ fn lights_with_holes() {
         }
     }
 }
+
+/// A dark sheet moves over a bright background, from x = -0.8 to x = 0.8 during the exposure. A point x is covered for the
+/// share (x + 0.8) / 1.6 of it, in the picture and, under parallel light, in the shadow on the wall behind.
+#[test]
+fn moving_sheets_blur() {
+    let sheet = format!(
+        "ObjectBegin \"sheet\" Material \"diffuse\" {} Shape \"bilinearmesh\" \"point3 P\" [-9 -9 0  0 -9 0  -9 9 0  0 9 0] ObjectEnd
+        AttributeBegin ActiveTransform StartTime Translate 0.8 0 0 ActiveTransform EndTime Translate -0.8 0 0
+        ActiveTransform All ObjectInstance \"sheet\" AttributeEnd",
+        flat("reflectance", 0.0)
+    );
+    let camera_at = |z: f64| {
+        format!(
+            "TransformTimes 0 1 Scale -1 1 1 LookAt 0 0 {z}  0 0 -9  0 1 0
+            Camera \"orthographic\" \"float screenwindow\" [-1 1 -1 1] \"float shutteropen\" 0 \"float shutterclose\" 1"
+        )
+    };
+    // The camera before the sheet sees the sky behind it; between sheet and wall it sees the wall, lit from behind the camera.
+    let sky = format!("LightSource \"infinite\" {} {sheet}", lit("L", 1.0));
+    let wall = format!(
+        "LightSource \"distant\" {} \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] {sheet}
+        Material \"diffuse\" {} Shape \"bilinearmesh\" \"point3 P\" [-9 -9 -1  9 -9 -1  -9 9 -1  9 9 -1]",
+        lit("L", std::f64::consts::PI),
+        flat("reflectance", 1.0)
+    );
+    for (what, world, z) in [("picture", &sky, 5.0), ("shadow", &wall, -0.5)] {
+        let camera = camera_at(z);
+        let setup = Setup {
+            size: [20, 8],
+            sampler: "\"sobol\"",
+            camera: &camera,
+            integrator: "\"integer maxdepth\" 1",
+            world,
+            ..Setup::default()
+        };
+        let values = luminance(&setup.film(what, 256));
+        for column in 0..20 {
+            let seen: Moments = (0..8).map(|row| values[20 * row + column]).collect();
+            let x = (column as f64 + 0.5) / 10.0 - 1.0;
+            // Uncovered while the edge is left of x.
+            let expected = 1.0 - ((0.8 - x) / 1.6).clamp(0.0, 1.0);
+            let difference = (seen.mean() - expected).abs();
+            assert!(difference < 0.03, "{what}, column {column}: {} instead of {expected}", seen.mean());
+        }
+    }
+}
