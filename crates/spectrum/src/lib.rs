@@ -43,7 +43,7 @@ mod tests;
 pub use bands::Bands;
 pub use color_space::{ColorSpace, ColorSpaceName};
 pub use daylight::daylight;
-pub use named::{NamedSpectrum, known_but_missing, named_spectrum, named_spectrum_names};
+pub use named::{CAMERA_SENSORS, NamedSpectrum, known_but_missing, named_spectrum, named_spectrum_names};
 pub use sampled::Sampled;
 pub use sensor::{Sensor, SensorSettings};
 pub use sigmoid::SigmoidPolynomial;

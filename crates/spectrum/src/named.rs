@@ -106,7 +106,7 @@ const ALIASES: [(&str, &str); 3] =
 const ZERO: [&str; 2] = ["metal-MgO-k", "metal-TiO2-k"];
 
 /// Camera sensors that scene files name and whose responses are not part of the crate.
-const CAMERAS: [&str; 17] = [
+pub const CAMERA_SENSORS: [&str; 17] = [
     "canon_eos_100d",
     "canon_eos_1dx_mkii",
     "canon_eos_200d",
@@ -164,7 +164,7 @@ pub fn named_spectrum_names() -> Vec<String> {
 /// For a name that scene files use and whose data are not part of the crate: what to use instead.
 #[must_use]
 pub fn known_but_missing(name: &str) -> Option<&'static str> {
-    CAMERAS.contains(&name).then_some("cie1931")
+    CAMERA_SENSORS.contains(&name).then_some("cie1931")
 }
 
 const METALS: &str = include_str!("../data/metals.csv");

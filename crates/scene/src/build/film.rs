@@ -1,7 +1,7 @@
 //! Film and sampler: from entities to settings.
 
 use etendue_math::{SamplerKind, SamplerSettings};
-use etendue_spectrum::{Sensor, SensorSettings};
+use etendue_spectrum::{CAMERA_SENSORS, Sensor, SensorSettings};
 
 use crate::document::{Document, Entity, Value};
 use crate::film::{AovSpace, FilmKind, FilmSettings, PixelBounds};
@@ -59,27 +59,6 @@ pub const SAMPLERS: &[(&str, &[ParameterSpec])] = &[
     ("halton", PLAIN_SAMPLER),
     ("independent", PLAIN_SAMPLER),
     ("stratified", STRATIFIED),
-];
-
-/// Sensors of pbrt-v4 for which the standard observer stands in.
-const MISSING_SENSORS: [&str; 17] = [
-    "canon_eos_100d",
-    "canon_eos_1dx_mkii",
-    "canon_eos_200d",
-    "canon_eos_200d_mkii",
-    "canon_eos_5d",
-    "canon_eos_5d_mkii",
-    "canon_eos_5d_mkiii",
-    "canon_eos_5d_mkiv",
-    "canon_eos_5ds",
-    "canon_eos_m",
-    "hasselblad_l1d_20c",
-    "nikon_d810",
-    "nikon_d850",
-    "sony_ilce_6400",
-    "sony_ilce_7m3",
-    "sony_ilce_7rm3",
-    "sony_ilce_9",
 ];
 
 /// The largest image: beyond it sums alone would need hundreds of gigabytes.
@@ -208,11 +187,11 @@ fn read_spectral(p: &mut Parameters<'_, '_>) -> FilmKind {
 fn read_sensor(p: &mut Parameters<'_, '_>, document: &Document) -> Sensor {
     let name = p.string("sensor", "cie1931");
     let span = p.span_of("sensor");
-    if MISSING_SENSORS.contains(&name.as_str()) {
+    if CAMERA_SENSORS.contains(&name.as_str()) {
         let message = format!("the sensor \"{name}\" is not available yet; \"cie1931\" stands in for it");
         p.diagnostics().warning(span, message);
     } else if name != "cie1931" {
-        let known = MISSING_SENSORS.iter().copied().chain(["cie1931"]);
+        let known = CAMERA_SENSORS.iter().copied().chain(["cie1931"]);
         p.diagnostics().unknown_name(span, "sensor", &name, known);
     }
     let white_balance = p.float("whitebalance", 0.0);
