@@ -29,6 +29,17 @@ pub struct ParameterSpec {
     pub doc: &'static str,
 }
 
+/// Shorthand for tables of parameters.
+pub(crate) const fn spec(
+    name: &'static str,
+    kind: &'static str,
+    default: &'static str,
+    unit: &'static str,
+    doc: &'static str,
+) -> ParameterSpec {
+    ParameterSpec { name, kind, default, unit, doc }
+}
+
 /// How an RGB value becomes a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SpectrumRole {

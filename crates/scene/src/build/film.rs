@@ -5,48 +5,42 @@ use etendue_spectrum::{CAMERA_SENSORS, Sensor, SensorSettings};
 
 use crate::document::{Document, Entity, Value};
 use crate::film::{AovSpace, FilmKind, FilmSettings, PixelBounds};
-use crate::parameters::{ParameterSpec, Parameters};
+use crate::parameters::{ParameterSpec, Parameters, spec};
 
 use super::{BuildContext, known_names};
 
-macro_rules! spec {
-    ($name:literal, $kind:literal, $default:literal, $unit:literal, $doc:literal) => {
-        ParameterSpec { name: $name, kind: $kind, default: $default, unit: $unit, doc: $doc }
-    };
-}
-
 const RGB: &[ParameterSpec] = &[
-    spec!("xresolution", "integer", "1280", "pixels", "width of the full image"),
-    spec!("yresolution", "integer", "720", "pixels", "height of the full image"),
-    spec!("cropwindow", "float", "0 1 0 1", "", "part to render: x0 x1 y0 y1 as shares of the image"),
-    spec!("pixelbounds", "integer", "", "pixels", "part to render: x0 x1 y0 y1"),
-    spec!("filename", "string", "pbrt.exr", "", "output file"),
-    spec!("sensor", "string", "cie1931", "", "response of the sensor"),
-    spec!("iso", "float", "100", "", "sensitivity"),
-    spec!("exposuretime", "float", "1", "s", "exposure"),
-    spec!("whitebalance", "float", "0", "K", "temperature of the light that becomes white; 0 for none"),
-    spec!("maxcomponentvalue", "float", "inf", "", "samples are scaled down to this largest component"),
-    spec!("diagonal", "float", "35", "mm", "diagonal of the sensor, for lens files"),
-    spec!("savefp16", "bool", "true", "", "accepted; channels are always written as 32-bit floats"),
+    spec("xresolution", "integer", "1280", "pixels", "width of the full image"),
+    spec("yresolution", "integer", "720", "pixels", "height of the full image"),
+    spec("cropwindow", "float", "0 1 0 1", "", "part to render: x0 x1 y0 y1 as shares of the image"),
+    spec("pixelbounds", "integer", "", "pixels", "part to render: x0 x1 y0 y1"),
+    spec("filename", "string", "pbrt.exr", "", "output file"),
+    spec("sensor", "string", "cie1931", "", "response of the sensor"),
+    spec("iso", "float", "100", "", "sensitivity"),
+    spec("exposuretime", "float", "1", "s", "exposure"),
+    spec("whitebalance", "float", "0", "K", "temperature of the light that becomes white; 0 for none"),
+    spec("maxcomponentvalue", "float", "inf", "", "samples are scaled down to this largest component"),
+    spec("diagonal", "float", "35", "mm", "diagonal of the sensor, for lens files"),
+    spec("savefp16", "bool", "true", "", "accepted; channels are always written as 32-bit floats"),
 ];
 const GBUFFER: &[ParameterSpec] =
-    &[spec!("coordinatesystem", "string", "camera", "", "space of positions and normals: camera or world")];
+    &[spec("coordinatesystem", "string", "camera", "", "space of positions and normals: camera or world")];
 const SPECTRAL: &[ParameterSpec] = &[
-    spec!("nbuckets", "integer", "16", "", "number of wavelength bands"),
-    spec!("lambdamin", "float", "360", "nm", "lower end of the bands"),
-    spec!("lambdamax", "float", "830", "nm", "upper end of the bands"),
+    spec("nbuckets", "integer", "16", "", "number of wavelength bands"),
+    spec("lambdamin", "float", "360", "nm", "lower end of the bands"),
+    spec("lambdamax", "float", "830", "nm", "upper end of the bands"),
 ];
 
 /// Film types with their own parameters; `gbuffer` and `spectral` take those of `rgb` too.
 pub const FILMS: &[(&str, &[ParameterSpec])] = &[("rgb", RGB), ("gbuffer", GBUFFER), ("spectral", SPECTRAL)];
 
-const PIXEL_SAMPLES: ParameterSpec = spec!("pixelsamples", "integer", "16", "", "samples per pixel");
-const SEED: ParameterSpec = spec!("seed", "integer", "0", "", "random seed");
+const PIXEL_SAMPLES: ParameterSpec = spec("pixelsamples", "integer", "16", "", "samples per pixel");
+const SEED: ParameterSpec = spec("seed", "integer", "0", "", "random seed");
 const PLAIN_SAMPLER: &[ParameterSpec] = &[PIXEL_SAMPLES, SEED];
 const STRATIFIED: &[ParameterSpec] = &[
-    spec!("xsamples", "integer", "4", "", "strata across"),
-    spec!("ysamples", "integer", "4", "", "strata down"),
-    spec!("jitter", "bool", "true", "", "random position within the stratum"),
+    spec("xsamples", "integer", "4", "", "strata across"),
+    spec("ysamples", "integer", "4", "", "strata down"),
+    spec("jitter", "bool", "true", "", "random position within the stratum"),
     SEED,
 ];
 

@@ -4,7 +4,7 @@ use etendue_geometry::{GeometryBuilder, GeometryId, ObjectId, Shape};
 
 use crate::document::{MaterialReference, ShapeEntity};
 use crate::material::MaterialId;
-use crate::parameters::{ParameterSpec, Parameters};
+use crate::parameters::{ParameterSpec, Parameters, spec};
 use crate::scene::ShapeAttributes;
 use crate::texture::FloatTexture;
 
@@ -28,66 +28,60 @@ pub const SHAPES: &[(&str, &[ParameterSpec])] = &[
 /// Shapes of pbrt-v4 that are left out with a warning.
 const MISSING_SHAPES: &[&str] = &["curve"];
 
-macro_rules! spec {
-    ($name:literal, $kind:literal, $default:literal, $unit:literal, $doc:literal) => {
-        ParameterSpec { name: $name, kind: $kind, default: $default, unit: $unit, doc: $doc }
-    };
-}
-
-const ALPHA: ParameterSpec = spec!(
+const ALPHA: ParameterSpec = spec(
     "alpha",
     "float texture",
     "1",
     "",
-    "share of rays that meet the surface; 0 makes an emissive surface an invisible light"
+    "share of rays that meet the surface; 0 makes an emissive surface an invisible light",
 );
-const PHI_MAX: ParameterSpec = spec!("phimax", "float", "360", "degrees", "largest azimuth");
+const PHI_MAX: ParameterSpec = spec("phimax", "float", "360", "degrees", "largest azimuth");
 const SPHERE: &[ParameterSpec] = &[
-    spec!("radius", "float", "1", "m", "radius"),
-    spec!("zmin", "float", "-radius", "m", "lower cut"),
-    spec!("zmax", "float", "radius", "m", "upper cut"),
+    spec("radius", "float", "1", "m", "radius"),
+    spec("zmin", "float", "-radius", "m", "lower cut"),
+    spec("zmax", "float", "radius", "m", "upper cut"),
     PHI_MAX,
     ALPHA,
 ];
 const DISK: &[ParameterSpec] = &[
-    spec!("height", "float", "0", "m", "z of the disk"),
-    spec!("radius", "float", "1", "m", "outer radius"),
-    spec!("innerradius", "float", "0", "m", "radius of the hole"),
+    spec("height", "float", "0", "m", "z of the disk"),
+    spec("radius", "float", "1", "m", "outer radius"),
+    spec("innerradius", "float", "0", "m", "radius of the hole"),
     PHI_MAX,
     ALPHA,
 ];
 const CYLINDER: &[ParameterSpec] = &[
-    spec!("radius", "float", "1", "m", "radius"),
-    spec!("zmin", "float", "-1", "m", "lower end"),
-    spec!("zmax", "float", "1", "m", "upper end"),
+    spec("radius", "float", "1", "m", "radius"),
+    spec("zmin", "float", "-1", "m", "lower end"),
+    spec("zmax", "float", "1", "m", "upper end"),
     PHI_MAX,
     ALPHA,
 ];
 const TRIANGLE_MESH: &[ParameterSpec] = &[
-    spec!("P", "point3", "", "m", "vertex positions"),
-    spec!("indices", "integer", "0 1 2", "", "three vertices for each triangle"),
-    spec!("N", "normal", "", "", "vertex normals"),
-    spec!("S", "vector", "", "", "vertex tangents"),
-    spec!("uv", "point2", "", "", "vertex texture coordinates"),
-    spec!("faceIndices", "integer", "", "", "a number for each face"),
+    spec("P", "point3", "", "m", "vertex positions"),
+    spec("indices", "integer", "0 1 2", "", "three vertices for each triangle"),
+    spec("N", "normal", "", "", "vertex normals"),
+    spec("S", "vector", "", "", "vertex tangents"),
+    spec("uv", "point2", "", "", "vertex texture coordinates"),
+    spec("faceIndices", "integer", "", "", "a number for each face"),
     ALPHA,
 ];
 const PLY_MESH: &[ParameterSpec] = &[
-    spec!("filename", "string", "", "", "PLY file, plain or gzipped; quadrilaterals become bilinear patches"),
+    spec("filename", "string", "", "", "PLY file, plain or gzipped; quadrilaterals become bilinear patches"),
     ALPHA,
 ];
 const BILINEAR_MESH: &[ParameterSpec] = &[
-    spec!("P", "point3", "", "m", "vertex positions"),
-    spec!("indices", "integer", "0 1 2 3", "", "four vertices for each patch: (0,0) (1,0) (0,1) (1,1)"),
-    spec!("N", "normal", "", "", "vertex normals"),
-    spec!("uv", "point2", "", "", "vertex texture coordinates"),
-    spec!("faceIndices", "integer", "", "", "a number for each patch"),
+    spec("P", "point3", "", "m", "vertex positions"),
+    spec("indices", "integer", "0 1 2 3", "", "four vertices for each patch: (0,0) (1,0) (0,1) (1,1)"),
+    spec("N", "normal", "", "", "vertex normals"),
+    spec("uv", "point2", "", "", "vertex texture coordinates"),
+    spec("faceIndices", "integer", "", "", "a number for each patch"),
     ALPHA,
 ];
 const LOOP_SUBDIVISION: &[ParameterSpec] = &[
-    spec!("P", "point3", "", "m", "vertices of the control mesh"),
-    spec!("indices", "integer", "", "", "three vertices for each face"),
-    spec!("levels", "integer", "3", "", "subdivision steps, at most 10"),
+    spec("P", "point3", "", "m", "vertices of the control mesh"),
+    spec("indices", "integer", "", "", "three vertices for each face"),
+    spec("levels", "integer", "3", "", "subdivision steps, at most 10"),
     ALPHA,
 ];
 

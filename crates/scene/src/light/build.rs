@@ -17,16 +17,7 @@ use crate::document::{Entity, LightEntity};
 use crate::parameters::{BuildContext, ParameterSpec, Parameters, SpectrumRole};
 use crate::texture::FloatTexture;
 
-/// Shorthand for tables of parameters.
-pub(super) const fn spec(
-    name: &'static str,
-    kind: &'static str,
-    default: &'static str,
-    unit: &'static str,
-    doc: &'static str,
-) -> ParameterSpec {
-    ParameterSpec { name, kind, default, unit, doc }
-}
+pub(super) use crate::parameters::spec;
 
 pub(super) const SCALE: ParameterSpec = spec("scale", "float", "1", "", "factor");
 pub(super) const POWER: ParameterSpec =
