@@ -6,6 +6,7 @@
 
 mod vector;
 
+pub mod approx;
 mod bounds;
 mod frame;
 mod numeric;
