@@ -8,6 +8,7 @@ pub mod scenes;
 
 pub mod convergence;
 pub mod pixel;
+pub mod speed;
 
 pub mod fit;
 pub mod plot;
