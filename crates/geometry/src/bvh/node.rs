@@ -35,21 +35,6 @@ pub(super) const fn leaf_range(leaf: u32) -> Range<usize> {
     first..first + (leaf & 7) as usize + 1
 }
 
-/// The same child after its array was appended to another one.
-pub(super) fn moved(child: u32, n_nodes: usize, n_blocks: usize, n_items: usize) -> u32 {
-    match child >> 30 {
-        INNER => node_index(child as usize + n_nodes),
-        TRIANGLES => moved_leaf(child, TRIANGLES, n_blocks),
-        ITEMS => moved_leaf(child, ITEMS, n_items),
-        _ => child,
-    }
-}
-
-fn moved_leaf(child: u32, kind: u32, offset: usize) -> u32 {
-    let range = leaf_range(child);
-    leaf(kind, range.start + offset, range.len())
-}
-
 /// Boxes of eight children, coordinate by coordinate.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]

@@ -1,5 +1,7 @@
 //! A shape in the space of its group, ready for intersection: one `match` per operation.
 
+use rayon::prelude::*;
+
 use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray, Transform, Vector3};
 
 use super::cylinder::Cylinder;
@@ -53,11 +55,7 @@ impl Entity {
     pub(crate) fn append_primitives(&self, geometry: u32, primitives: &mut Vec<BuildPrimitive>) {
         let reference = |primitive: u32| PrimitiveRef { geometry, primitive };
         match self {
-            Self::Triangles(triangles) => primitives.extend(
-                (0..self.n_primitives())
-                    .filter(|&triangle| triangles.is_valid(triangle))
-                    .map(|triangle| BuildPrimitive::triangle(reference(triangle), &self.triangle(triangle))),
-            ),
+            Self::Triangles(triangles) => append_triangles(triangles, geometry, primitives),
             Self::Patches(patches) => primitives.extend(
                 (0..self.n_primitives())
                     .filter(|&patch| patches.is_valid(patch))
@@ -223,5 +221,33 @@ impl Entity {
             Self::Patches(patches) => counts.n_patches += patches.mesh().indices.len(),
             Self::Quadric(_) => counts.n_quadrics += 1,
         }
+    }
+}
+
+/// Appends the triangles that can be hit, in parallel.
+fn append_triangles(triangles: &Triangles, geometry: u32, primitives: &mut Vec<BuildPrimitive>) {
+    const CHUNK: usize = 1 << 13;
+    let first = primitives.len();
+    primitives.resize(first + triangles.mesh().indices.len(), BuildPrimitive::EMPTY);
+    let n_left_out: usize = primitives[first..]
+        .par_chunks_mut(CHUNK)
+        .enumerate()
+        .map(|(chunk, places)| {
+            let mut n_left_out = 0;
+            for (i, place) in places.iter_mut().enumerate() {
+                let triangle = (chunk * CHUNK + i) as u32;
+                if triangles.is_valid(triangle) {
+                    let corners = triangles.positions(triangle).map(|p| [p.x, p.y, p.z]);
+                    *place =
+                        BuildPrimitive::triangle(PrimitiveRef { geometry, primitive: triangle }, &corners);
+                } else {
+                    n_left_out += 1;
+                }
+            }
+            n_left_out
+        })
+        .sum();
+    if n_left_out > 0 {
+        primitives.retain(|primitive| !primitive.is_empty());
     }
 }
