@@ -1,12 +1,14 @@
 //! Building with the surface area heuristic (SPEC ACC-5).
 //!
 //! A range of primitives is split where the sum of area times number of leaf blocks over both sides is least;
-//! centroids fall into up to 32 bins per axis. A node takes the eight ranges that result from always splitting the
-//! one of largest area. Primitives are reordered in place. Large ranges are handled in parallel and joined in
-//! order, so that the tree does not depend on the number of threads.
+//! centroids fall into up to 32 bins per axis. Primitives are reordered in place. Above, a node takes the eight
+//! ranges that result from always splitting the one of largest area; below, where that would leave many nodes half
+//! empty, a binary tree is collapsed at least cost. Large ranges are handled in parallel and joined in order, so
+//! that the tree does not depend on the number of threads.
 
 mod assemble;
 mod bins;
+mod collapse;
 mod partition;
 mod primitive;
 
@@ -14,6 +16,7 @@ pub(crate) use primitive::{Box3, BuildPrimitive};
 
 use self::assemble::assemble;
 use self::bins::{Candidate, best_split};
+use self::collapse::{BinaryNode, collapse};
 use self::partition::partition;
 use self::primitive::Box4;
 use super::node::{ITEMS, Node, TRIANGLES, leaf, node_index};
@@ -102,13 +105,17 @@ fn build_subtree(
     depth: usize,
 ) -> Vec<Vec<Node>> {
     if span.len() < PARALLEL_BUILD {
-        let mut nodes = Vec::with_capacity(span.len() / 8 + 1);
-        append_subtree(&mut nodes, primitives, offset, span, depth);
+        let mut tree = Vec::with_capacity(span.len() + 1);
+        append_binary(&mut tree, primitives, &span, 3 * depth);
+        let mut nodes = Vec::with_capacity(span.len() / 16 + 1);
+        collapse(&tree, primitives, offset, &mut nodes);
         return vec![nodes];
     }
     let children = split_in_eight(primitives, span, depth);
-    let leaves: Vec<Option<u32>> =
-        children.iter().map(|child| child.is_leaf.then(|| name_leaf(primitives, offset, child))).collect();
+    let leaves: Vec<Option<u32>> = children
+        .iter()
+        .map(|child| child.is_leaf.then(|| name_leaf(primitives, offset, child.start..child.end)))
+        .collect();
     let mut rest = primitives;
     let mut jobs = Vec::with_capacity(children.len());
     for child in &children {
@@ -136,33 +143,33 @@ fn build_subtree(
     std::iter::once(vec![node]).chain(subtrees.into_iter().flatten()).collect()
 }
 
-/// Appends the node over `span` and all below it.
-fn append_subtree(
-    nodes: &mut Vec<Node>,
+/// Appends the binary tree over `span` in depth-first order.
+fn append_binary(
+    tree: &mut Vec<BinaryNode>,
     primitives: &mut [BuildPrimitive],
-    offset: usize,
-    span: Span,
+    span: &Span,
     depth: usize,
-) {
-    let index = nodes.len();
-    nodes.push(Node::EMPTY);
-    for (slot, child) in split_in_eight(primitives, span, depth).iter().enumerate() {
-        let code = if child.is_leaf {
-            name_leaf(primitives, offset, child)
-        } else {
-            node_index(nodes.len() - index)
-        };
-        nodes[index].set(slot, &child.bounds.to_box3(), code);
-        if !child.is_leaf {
-            append_subtree(nodes, primitives, offset, *child, depth + 1);
+) -> bool {
+    let index = tree.len();
+    let (start, end) = (span.start as u32, span.end as u32);
+    tree.push(BinaryNode { bounds: span.bounds, start, end, right: 0, is_pure: true });
+    let parts = if span.is_leaf { None } else { split(primitives, span, depth) };
+    let is_pure = match parts {
+        None => primitives[span.start].is_triangle(),
+        Some((left, right)) => {
+            let left_is_pure = append_binary(tree, primitives, &left, depth + 1);
+            tree[index].right = tree.len() as u32;
+            append_binary(tree, primitives, &right, depth + 1) && left_is_pure
         }
-    }
+    };
+    tree[index].is_pure = is_pure;
+    is_pure
 }
 
 /// Names a leaf by its primitives.
-fn name_leaf(primitives: &[BuildPrimitive], offset: usize, span: &Span) -> u32 {
-    let kind = if primitives[span.start].is_triangle() { TRIANGLES } else { ITEMS };
-    leaf(kind, offset + span.start, span.len())
+fn name_leaf(primitives: &[BuildPrimitive], offset: usize, range: std::ops::Range<usize>) -> u32 {
+    let kind = if primitives[range.start].is_triangle() { TRIANGLES } else { ITEMS };
+    leaf(kind, offset + range.start, range.len())
 }
 
 /// Splits a range until there are eight, in order of their place in the array.
@@ -204,7 +211,7 @@ fn split(primitives: &mut [BuildPrimitive], span: &Span, depth: usize) -> Option
     let splits = match &candidate {
         Some(candidate) => {
             let has_items = || own.iter().any(|primitive| !primitive.is_triangle());
-            !may_be_leaf || has_items() || candidate.cost + NODE_COST * area < leaf_cost(own.len()) * area
+            !may_be_leaf || has_items() || candidate.cost < leaf_cost(own.len()) * area
         }
         None => !may_be_leaf,
     };

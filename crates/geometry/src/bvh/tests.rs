@@ -283,11 +283,11 @@ fn the_tree_is_the_same_for_any_number_of_threads() {
     assert!(one == build_with(2) && one == build_with(3));
 }
 
-/// The hierarchy of a large mesh needs at most 110 bytes per triangle.
+/// The hierarchy of a large mesh needs at most 70 bytes per triangle.
 #[test]
 fn memory_per_triangle_is_small() {
     let (geometry, _) = single(Shape::Triangles(ball(7)), Transform::IDENTITY, false);
     let n = geometry.counts().n_triangles;
     let bytes = geometry.hierarchy_bytes() as f64 / n as f64;
-    assert!(n == 8 << 14 && bytes < 110.0, "{bytes} bytes for each of {n} triangles");
+    assert!(n == 8 << 14 && bytes < 70.0, "{bytes} bytes for each of {n} triangles");
 }
