@@ -14,6 +14,8 @@
 //! bias. The fourth place holds the mean of the three, so that maxima and means over the places are sound; it has
 //! density 0.
 
+use etendue_math::approx::ln;
+
 use crate::{Bands, LAMBDA_MAX_NM, LAMBDA_MIN_NM, N_LAMBDA, Sampled};
 
 /// Number of bands.
@@ -67,8 +69,12 @@ impl Wavelengths {
     #[inline]
     #[must_use]
     pub fn sample_visible(u: f32) -> Self {
-        let lambda_nm = rotated(u).map(sample_visible_nm);
-        Self { lambda_nm, pdf: lambda_nm.map(visible_pdf), first_band: None }
+        let tanh = rotated(u).map(|u| 0.856_910_62 - 1.827_501_97 * u);
+        // The inverse of the distribution, with artanh(t) = ln((1 + t) / (1 - t)) / 2.
+        let lambda_nm = tanh.map(|t| 538.0 - 0.5 * 138.888_889 * ln((1.0 + t) / (1.0 - t)));
+        // 1 / cosh^2 = 1 - tanh^2.
+        let pdf = tanh.map(|t| 0.003_939_804_2 * (1.0 - t * t));
+        Self { lambda_nm: lambda_nm.map(|nm| nm.clamp(LAMBDA_MIN_NM, LAMBDA_MAX_NM)), pdf, first_band: None }
     }
 
     /// Wavelengths for a random number in [0, 1), equally dense everywhere.
@@ -180,18 +186,4 @@ fn rotated(u: f32) -> [f32; N_LAMBDA] {
         let v = u + i as f32 / N_LAMBDA as f32;
         if v >= 1.0 { v - 1.0 } else { v }
     })
-}
-
-/// The wavelength in nm at which the distribution of visible wavelengths reaches `u`.
-#[inline]
-fn sample_visible_nm(u: f32) -> f32 {
-    let lambda = 538.0 - 138.888_889 * (0.856_910_62 - 1.827_501_97 * u).atanh();
-    lambda.clamp(LAMBDA_MIN_NM, LAMBDA_MAX_NM)
-}
-
-/// Density per nm of [`sample_visible_nm`].
-#[inline]
-fn visible_pdf(lambda_nm: f32) -> f32 {
-    let cosh = (0.0072 * (lambda_nm - 538.0)).cosh();
-    0.003_939_804_2 / (cosh * cosh)
 }

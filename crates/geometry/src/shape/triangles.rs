@@ -232,7 +232,7 @@ impl Triangles {
         u: Point2,
     ) -> Option<(ShapeSample, f32)> {
         let spherical = self.spherical(triangle, p)?;
-        let [_, b1, b2] = spherical.sample(u)?;
+        let [_, b1, b2] = spherical.sample(u);
         Some((self.sample_at(triangle, [b1, b2], 0.0), spherical.pdf_w()))
     }
 

@@ -2,6 +2,7 @@
 
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
 
+use crate::approx::{atan2, sin_cos_small_turns, sin_cos_turns};
 use crate::{ONE_MINUS_EPSILON, Point2};
 
 /// A point of the unit disk; concentric squares become concentric circles, so that neighbours stay neighbours
@@ -10,13 +11,12 @@ use crate::{ONE_MINUS_EPSILON, Point2};
 #[must_use]
 pub fn sample_concentric_disk(u: Point2) -> Point2 {
     let (x, y) = (2.0 * u.x - 1.0, 2.0 * u.y - 1.0);
-    if x == 0.0 && y == 0.0 {
-        return Point2::new(0.0, 0.0);
-    }
-    let (r, phi) =
-        if x.abs() > y.abs() { (x, FRAC_PI_4 * (y / x)) } else { (y, FRAC_PI_2 - FRAC_PI_4 * (x / y)) };
-    let (sin, cos) = phi.sin_cos();
-    Point2::new(r * cos, r * sin)
+    let along_x = x.abs() > y.abs();
+    // The radius is the larger coordinate, and the angle from its axis an eighth of a turn times the quotient.
+    let (radius, other) = if along_x { (x, y) } else { (y, x) };
+    let (sin, cos) = sin_cos_small_turns(if radius == 0.0 { 0.0 } else { 0.125 * (other / radius) });
+    let (near, across) = (radius * cos, radius * sin);
+    if along_x { Point2::new(near, across) } else { Point2::new(across, near) }
 }
 
 /// Density of [`sample_concentric_disk`] per unit area.
@@ -30,7 +30,7 @@ pub const fn concentric_disk_pdf() -> f32 {
 #[must_use]
 pub fn invert_concentric_disk(p: Point2) -> Point2 {
     let r = (p.x * p.x + p.y * p.y).sqrt();
-    let mut phi = p.y.atan2(p.x);
+    let mut phi = atan2(p.y, p.x);
     if phi < -FRAC_PI_4 {
         phi += TAU;
     }
@@ -52,7 +52,7 @@ pub fn invert_concentric_disk(p: Point2) -> Point2 {
 #[must_use]
 pub fn sample_polar_disk(u: Point2) -> Point2 {
     let r = u.x.sqrt();
-    let (sin, cos) = (TAU * u.y).sin_cos();
+    let (sin, cos) = sin_cos_turns(u.y);
     Point2::new(r * cos, r * sin)
 }
 
@@ -71,7 +71,7 @@ pub fn invert_polar_disk(p: Point2) -> Point2 {
 
 /// The angle of (x, y) from the x axis as a fraction of the full turn, in [0, 1).
 pub(super) fn turn_fraction(x: f32, y: f32) -> f32 {
-    let phi = y.atan2(x);
+    let phi = atan2(y, x);
     let phi = if phi < 0.0 { phi + TAU } else { phi };
     (phi / TAU).clamp(0.0, ONE_MINUS_EPSILON)
 }

@@ -2,8 +2,9 @@
 //! using SIMD"): the upper hemisphere is the inner diamond, the lower one the four corners folded out. Environment maps
 //! of pbrt scenes have this layout.
 
-use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f32::consts::FRAC_PI_2;
 
+use crate::approx::{atan2, sin_cos_turns};
 use crate::{ONE_MINUS_EPSILON, Point2, Vector3, safe_sqrt};
 
 /// The direction of a point of the unit square. Density per steradian of a uniform point: 1 / (4 pi).
@@ -16,9 +17,10 @@ pub fn equal_area_square_to_sphere(p: Point2) -> Vector3 {
     let signed_distance = 1.0 - (u_abs + v_abs);
     let d = signed_distance.abs();
     let r = 1.0 - d;
-    let phi = if r == 0.0 { 1.0 } else { (v_abs - u_abs) / r + 1.0 } * FRAC_PI_4;
+    // An angle of the first quadrant.
+    let turns = if r == 0.0 { 0.125 } else { 0.125 * ((v_abs - u_abs) / r + 1.0) };
     let z = (1.0 - r * r).copysign(signed_distance);
-    let (sin_phi, cos_phi) = phi.sin_cos();
+    let (sin_phi, cos_phi) = sin_cos_turns(turns);
     let sin_theta = r * safe_sqrt(2.0 - r * r);
     Vector3::new(cos_phi.copysign(u) * sin_theta, sin_phi.copysign(v) * sin_theta, z)
 }
@@ -30,7 +32,7 @@ pub fn equal_area_sphere_to_square(w: Vector3) -> Point2 {
     let (x, y, z) = (w.x.abs(), w.y.abs(), w.z.abs());
     // sqrt(1 - |z|), from the sine near the pole, where 1 - |z| cancels.
     let r = if z > 0.5 { ((x * x + y * y) / (1.0 + z)).sqrt() } else { safe_sqrt(1.0 - z) };
-    let phi = if x == 0.0 && y == 0.0 { 0.0 } else { y.atan2(x) / FRAC_PI_2 };
+    let phi = atan2(y, x) / FRAC_PI_2;
     let (mut u, mut v) = ((1.0 - phi) * r, phi * r);
     if w.z < 0.0 {
         (u, v) = (1.0 - v, 1.0 - u);

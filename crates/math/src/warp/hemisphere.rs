@@ -3,6 +3,7 @@
 use std::f32::consts::{FRAC_1_PI, TAU};
 
 use super::disk::{invert_concentric_disk, sample_concentric_disk, turn_fraction};
+use crate::approx::sin_cos_turns;
 use crate::{ONE_MINUS_EPSILON, Point2, Vector3, safe_sqrt};
 
 /// A direction with density cos(theta) / pi: the disk, lifted to the hemisphere (Malley).
@@ -76,6 +77,6 @@ pub fn invert_cosine_power(w: Vector3, n: f32) -> Point2 {
 /// The direction at height `z`, `sin_theta` from the axis, at a fraction of the turn about it.
 #[inline]
 pub(super) fn direction(z: f32, sin_theta: f32, turn: f32) -> Vector3 {
-    let (sin, cos) = (TAU * turn).sin_cos();
+    let (sin, cos) = sin_cos_turns(turn);
     Vector3::new(sin_theta * cos, sin_theta * sin, z)
 }

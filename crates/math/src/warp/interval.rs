@@ -3,6 +3,7 @@
 use std::f32::consts::TAU;
 
 use crate::ONE_MINUS_EPSILON;
+use crate::approx::{exp, ln_1p};
 use crate::statistics::{normal_cdf, normal_quantile};
 
 /// A number in [0, 1) whose density is linear, `a` at 0 and `b` at 1 up to a factor; weights at least 0, not both 0.
@@ -58,14 +59,14 @@ pub fn invert_tent(x: f32, radius: f32) -> f32 {
 #[inline]
 #[must_use]
 pub fn sample_exponential(u: f32, rate: f32) -> f32 {
-    -(-u).ln_1p() / rate
+    -ln_1p(-u) / rate
 }
 
 /// Density of [`sample_exponential`].
 #[inline]
 #[must_use]
 pub fn exponential_pdf(x: f32, rate: f32) -> f32 {
-    if x < 0.0 { 0.0 } else { rate * (-rate * x).exp() }
+    if x < 0.0 { 0.0 } else { rate * exp(-rate * x) }
 }
 
 /// Inverse of [`sample_exponential`].
@@ -88,7 +89,7 @@ pub fn sample_normal(u: f32, mean: f32, sigma: f32) -> f32 {
 #[must_use]
 pub fn normal_pdf(x: f32, mean: f32, sigma: f32) -> f32 {
     let t = (x - mean) / sigma;
-    (-0.5 * t * t).exp() / (sigma * TAU.sqrt())
+    exp(-0.5 * t * t) / (sigma * TAU.sqrt())
 }
 
 /// Inverse of [`sample_normal`].

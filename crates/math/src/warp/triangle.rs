@@ -1,11 +1,21 @@
 //! Triangles: uniformly by area, or by the solid angle that they fill as seen from a point.
 //!
-//! Arvo 1995, "Stratified Sampling of Spherical Triangles": the first number cuts the spherical triangle ABC by a great
-//! circle through B so that the part next to A has the wanted share of the area (Girard: area = alpha + beta + gamma - pi);
-//! the second chooses a height on the arc from B to the cut. In double precision, since the excess cancels for small ones.
+//! The map is that of Arvo 1995, "Stratified Sampling of Spherical Triangles": the first number cuts the spherical triangle
+//! ABC by a great circle through B so that the part next to A has the wanted share of the area; the second chooses a height
+//! on the arc from B to the cut. It is computed as in Peters 2021, "BRDF Importance Sampling for Polygonal Lights"
+//! (doi:10.1145/3450626.3459672): with unit vectors a, b, c and the solid angle
+//! `tan(omega / 2) = |a.(b x c)| / (1 + a.b + b.c + c.a)` (van Oosterom and Strackee 1983), the direction h half way between
+//! a and the cut c' gives a triangle of `tan(omega' / 2) = |a.(b x h)| / (h.(a + b))`, which is linear in h.
+//!
+//! Single precision is enough at any size, because no difference of nearly equal numbers is taken: the triple product comes
+//! from the edges of the triangle, and directions are only ever weights of a, b, c, which lead straight to barycentric
+//! coordinates.
+
+use std::f32::consts::TAU;
 
 use glam::DVec3;
 
+use crate::approx::{atan2, sin_cos_turns};
 use crate::{ONE_MINUS_EPSILON, Point2, Point3, Vector3};
 
 /// Barycentric coordinates of a point of a triangle, uniform by area (Heitz 2019, "A Low-Distortion Map Between Triangle
@@ -44,131 +54,130 @@ pub fn invert_uniform_triangle(b: [f32; 3]) -> Point2 {
 /// A triangle as seen from a point, ready to sample directions uniformly.
 #[derive(Clone, Copy, Debug)]
 pub struct SphericalTriangle {
-    corners: [Point3; 3],
-    origin: Point3,
-    /// Unit directions to the corners.
-    a: DVec3,
-    b: DVec3,
-    c: DVec3,
+    /// Distances of the corners.
+    distances: [f32; 3],
+    /// Products of the vectors to the corners: A . B, B . C, C . A and A . (B x C), the last not negative.
+    ab: f32,
+    bc: f32,
+    ca: f32,
+    triple: f32,
     /// Steradians.
-    solid_angle: f64,
-}
-
-fn dvec(v: Vector3) -> DVec3 {
-    DVec3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z))
+    solid_angle: f32,
 }
 
 impl SphericalTriangle {
     /// The triangle `v` as seen from `p`; `None` if it fills no solid angle.
+    #[inline]
     #[must_use]
     pub fn new(v: [Point3; 3], p: Point3) -> Option<Self> {
-        let a = dvec(v[0] - p).try_normalize()?;
-        let b = dvec(v[1] - p).try_normalize()?;
-        let c = dvec(v[2] - p).try_normalize()?;
-        // tan(area / 2) = |a . (b x c)| / (1 + a.b + b.c + c.a)  [van Oosterom and Strackee 1983]
-        let triple = a.dot((b - a).cross(c - a)).abs();
-        let solid_angle = 2.0 * triple.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a));
-        if solid_angle.is_nan() || solid_angle <= 1e-12 {
-            return None;
-        }
-        Some(Self { corners: v, origin: p, a, b, c, solid_angle })
-    }
-
-    /// Interior angle at `a`.
-    fn alpha(&self) -> Option<f64> {
-        let n_ab = self.a.cross(self.b).try_normalize()?;
-        let n_ac = self.a.cross(self.c).try_normalize()?;
-        Some(n_ab.angle_between(n_ac))
+        let [a, b, c] = v.map(|v| v - p);
+        let distances = [a.length(), b.length(), c.length()];
+        let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
+        // Of vectors to the corners any may be replaced by edges.
+        let triple = a.dot((v[1] - v[0]).cross(v[2] - v[0])).abs();
+        // tan(omega / 2), both sides times the three distances.
+        let [la, lb, lc] = distances;
+        let half = atan2(triple, (la * lb + ab) * lc + (bc * la + ca * lb));
+        let solid_angle = 2.0 * half;
+        (solid_angle > 1e-30).then_some(Self { distances, ab, bc, ca, triple, solid_angle })
     }
 
     /// Steradians.
+    #[inline]
     #[must_use]
     pub fn solid_angle(&self) -> f32 {
-        self.solid_angle as f32
+        self.solid_angle
     }
 
     /// Density of [`sample`](Self::sample) per steradian.
+    #[inline]
     #[must_use]
     pub fn pdf_w(&self) -> f32 {
-        (1.0 / self.solid_angle) as f32
+        1.0 / self.solid_angle
     }
 
-    /// Barycentric coordinates of a point of the triangle, uniform by solid angle; `None` where rounding leaves none.
+    /// Barycentric coordinates of a point of the triangle, uniform by solid angle.
+    #[inline]
     #[must_use]
-    pub fn sample(&self, u: Point2) -> Option<[f32; 3]> {
-        let area = f64::from(u.x) * self.solid_angle;
-        let alpha = self.alpha()?;
-        let (sin_alpha, cos_alpha) = alpha.sin_cos();
-        let (s, c) = (area - alpha).sin_cos();
-        // The cut C' on the arc from A to C that leaves the area, by its distance from A.  [Arvo, section 3]
-        let (k_u, k_v) = (c - cos_alpha, s + sin_alpha * self.a.dot(self.b));
-        let numerator = k_v - (k_v * c - k_u * s) * cos_alpha;
-        let denominator = (k_v * s + k_u * c) * sin_alpha;
-        let cos_b = (-numerator / denominator).clamp(-1.0, 1.0);
-        let cos_b = if cos_b.is_nan() { 1.0 } else { cos_b };
-        let cut = self.a * cos_b + orthogonal_part(self.c, self.a)? * (1.0 - cos_b * cos_b).sqrt();
-        // The height on the arc from B to the cut.
-        let one_minus_cos = f64::from(u.y) * (1.0 - cut.dot(self.b));
-        let sine = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
-        let w = match orthogonal_part(cut, self.b) {
-            Some(across) => self.b * (1.0 - one_minus_cos) + across * sine,
-            None => self.b,
-        };
-        barycentric(self.corners, self.origin, w)
+    pub fn sample(&self, u: Point2) -> [f32; 3] {
+        let [ia, ib, ic] = self.distances.map(f32::recip);
+        // Of the directions to the corners.
+        let (ab, bc, ca) = (self.ab * (ia * ib), self.bc * (ib * ic), self.ca * (ic * ia));
+        let triple = self.triple * ia * (ib * ic);
+        // tan(omega' / 2) = sin / cos for the half vector h = h_a a + h_c c.
+        let (sin, cos) = sin_cos_turns(u.x * self.solid_angle * (0.5 / TAU));
+        let (h_a, h_c) = (triple * cos - (ca + bc) * sin, (1.0 + ab) * sin);
+        // The cut c' = 2 (a.h) h / h.h - a = p a + q c.
+        let a_h = h_a + h_c * ca;
+        let twice = 2.0 * a_h / (h_a * a_h + h_c * (h_a * ca + h_c));
+        let (p, q) = (twice * h_a - 1.0, twice * h_c);
+        // 1 - cos t = u.y (1 - cos s) along the arc of length s from b to c'; (sin t / sin s)^2 from it without cancelling.
+        let cos_s = p * ab + q * bc;
+        let cos_t = 1.0 - u.y * (1.0 - cos_s);
+        let y = (u.y * (1.0 + cos_t) / (1.0 + cos_s).max(f32::MIN_POSITIVE)).max(0.0).sqrt();
+        let x = cos_t - y * cos_s;
+        barycentric([y * p * ia, x * ib, y * q * ic])
     }
 }
 
-/// The component of `v` perpendicular to the unit vector `w`, normalised.
-fn orthogonal_part(v: DVec3, w: DVec3) -> Option<DVec3> {
-    (v - w * v.dot(w)).try_normalize()
+/// Barycentric coordinates of the point in the direction that is the sum of the vectors to the corners with these weights.
+#[inline]
+fn barycentric(weights: [f32; 3]) -> [f32; 3] {
+    let [a, b, c] = weights.map(|weight| weight.max(0.0));
+    let sum = a + b + c;
+    if !(sum > 0.0 && sum.is_finite()) {
+        return [1.0 / 3.0; 3];
+    }
+    let (b, c) = (b / sum, c / sum);
+    [(1.0 - b - c).max(0.0), b, c]
 }
 
 /// Solid angle in steradians of the triangle `v` as seen from `p`.
+#[inline]
 #[must_use]
 pub fn spherical_triangle_solid_angle(v: [Point3; 3], p: Point3) -> f32 {
-    SphericalTriangle::new(v, p).map_or(0.0, |triangle| triangle.solid_angle as f32)
+    SphericalTriangle::new(v, p).map_or(0.0, |triangle| triangle.solid_angle)
 }
 
 /// Barycentric coordinates of a point of the triangle `v`, uniform by the solid angle seen from `p`, and the density per
 /// steradian; `None` if the triangle fills no solid angle.
+#[inline]
 #[must_use]
 pub fn sample_spherical_triangle(v: [Point3; 3], p: Point3, u: Point2) -> Option<([f32; 3], f32)> {
     let t = SphericalTriangle::new(v, p)?;
-    Some((t.sample(u)?, t.pdf_w()))
+    Some((t.sample(u), t.pdf_w()))
 }
 
-/// Barycentric coordinates of the point where the ray from `p` along `w` meets the plane of the triangle.
-fn barycentric(v: [Point3; 3], p: Point3, w: DVec3) -> Option<[f32; 3]> {
-    let (e1, e2) = (dvec(v[1] - v[0]), dvec(v[2] - v[0]));
-    let s1 = w.cross(e2);
-    let determinant = s1.dot(e1);
-    if determinant == 0.0 {
-        return None;
-    }
-    let s = dvec(p - v[0]);
-    let b1 = (s.dot(s1) / determinant).clamp(0.0, 1.0);
-    let b2 = (w.dot(s.cross(e1)) / determinant).clamp(0.0, 1.0 - b1);
-    Some([(1.0 - b1 - b2) as f32, b1 as f32, b2 as f32])
-}
-
-/// The numbers for which [`sample_spherical_triangle`] chooses the direction `w` (of length 1, within the triangle).
+/// The numbers for which [`sample_spherical_triangle`] chooses the direction `w` (within the triangle).
 #[must_use]
 pub fn invert_spherical_triangle(v: [Point3; 3], p: Point3, w: Vector3) -> Option<Point2> {
-    let t = SphericalTriangle::new(v, p)?;
-    let w = dvec(w).try_normalize()?;
+    invert(v.map(|v| dvec(v - p)), dvec(w))
+}
+
+fn dvec(v: Vector3) -> DVec3 {
+    DVec3::new(v.x.into(), v.y.into(), v.z.into())
+}
+
+fn invert(corners: [DVec3; 3], w: DVec3) -> Option<Point2> {
+    let [a, b, c] = corners.map(DVec3::try_normalize);
+    let (a, b, c, w) = (a?, b?, c?, w.try_normalize()?);
     // The cut is where the great circle through B and w meets the one through A and C.
-    let mut cut = t.b.cross(w).cross(t.c.cross(t.a)).try_normalize().unwrap_or(t.a);
-    if cut.dot(t.a + t.c) < 0.0 {
+    let mut cut = b.cross(w - b).cross(c.cross(a - c)).try_normalize().unwrap_or(a);
+    if cut.dot(a + c) < 0.0 {
         cut = -cut;
     }
-    let part = |x: DVec3| {
-        let triple = t.a.dot((t.b - t.a).cross(x - t.a)).abs();
-        2.0 * triple.atan2(1.0 + t.a.dot(t.b) + t.b.dot(x) + x.dot(t.a))
-    };
-    let share = part(cut) / t.solid_angle;
+    let share = solid_angle(a, b, cut) / solid_angle(a, b, c);
     // 1 - cos as half the squared chord, which does not cancel.
-    let whole = (cut - t.b).length_squared();
-    let height = if whole > 0.0 { (w - t.b).length_squared() / whole } else { 0.0 };
+    let whole = (cut - b).length_squared();
+    let height = if whole > 0.0 { (w - b).length_squared() / whole } else { 0.0 };
     let unit = |x: f64| (x as f32).clamp(0.0, ONE_MINUS_EPSILON);
     Some(Point2::new(unit(share), unit(height)))
 }
+
+fn solid_angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    let triple = a.dot((b - a).cross(c - a)).abs();
+    2.0 * triple.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+}
+
+#[cfg(test)]
+mod tests;
