@@ -21,8 +21,8 @@ pub(crate) struct Triangles {
     flips: bool,
 }
 
-/// Solid angles in which sampling by direction is accurate and worth its price, in steradians, as in pbrt-v4.
-const SPHERICAL_SAMPLING: std::ops::Range<f32> = 3e-4..6.22;
+/// Solid angles in which sampling by direction is accurate, in steradians: all but nearly half the sphere.
+const SPHERICAL_SAMPLING: std::ops::RangeTo<f32> = ..6.22;
 
 impl Triangles {
     /// Moves a mesh into the space of its group, reusing its memory.
