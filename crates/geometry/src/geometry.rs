@@ -3,7 +3,7 @@
 use etendue_math::{Bounds3, Point2, Ray};
 
 use crate::builder::WORLD;
-use crate::bvh::{Bvh, INSTANCE, PrimitiveRef, TraversalRay, Verdict, Visitor};
+use crate::bvh::{Bvh, INSTANCE, Kernel, PrimitiveRef, TraversalRay, Verdict, Visitor};
 use crate::hit::{GeometryId, Hit, NO_INSTANCE, SurfacePoint};
 use crate::instance::Instance;
 use crate::mesh::heap;
@@ -18,6 +18,7 @@ pub struct Geometry {
     /// Hierarchy of the world, then of each object.
     groups: Vec<Bvh>,
     instances: Vec<Instance>,
+    kernel: Kernel,
 }
 
 /// How much there is, for people.
@@ -40,21 +41,29 @@ pub struct GeometryCounts {
 }
 
 impl Geometry {
-    pub(crate) const fn new(
+    pub(crate) fn new(
         entities: Vec<Entity>,
         entity_groups: Vec<u32>,
         groups: Vec<Bvh>,
         instances: Vec<Instance>,
     ) -> Self {
-        Self { entities, entity_groups, groups, instances }
+        Self { entities, entity_groups, groups, instances, kernel: Kernel::detect() }
     }
 
-    /// The nearest accepted hit with t in (0, `t_max`). `filter` sees each candidate and may refuse it.
+    /// The same geometry, traced without the instructions that only some processors have. For tests and
+    /// measurements: the hits are the same, bit for bit.
+    #[must_use]
+    pub fn traced_portably(self) -> Self {
+        Self { kernel: Kernel::PORTABLE, ..self }
+    }
+
+    /// The nearest accepted hit with t in (0, `t_max`), of equally near ones the first in order of instance, shape and
+    /// primitive. `filter` sees each candidate and may refuse it.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32, filter: &impl Fn(&Hit) -> bool) -> Option<Hit> {
         let mut search =
             Search::<_, false> { geometry: self, ray: *ray, instance: NO_INSTANCE, filter, best: None };
-        search.run(WORLD, t_max);
+        search.run(WORLD, t_max.next_down());
         search.best
     }
 
@@ -63,7 +72,7 @@ impl Geometry {
     pub fn occluded(&self, ray: &Ray, t_max: f32, filter: &impl Fn(&Hit) -> bool) -> bool {
         let mut search =
             Search::<_, true> { geometry: self, ray: *ray, instance: NO_INSTANCE, filter, best: None };
-        search.run(WORLD, t_max);
+        search.run(WORLD, t_max.next_down());
         search.best.is_some()
     }
 
@@ -144,11 +153,12 @@ struct Search<'a, F, const ANY: bool> {
 }
 
 impl<F: Fn(&Hit) -> bool, const ANY: bool> Search<'_, F, ANY> {
+    /// Searches a group for hits with t in (0, `t_max`].
     #[inline]
     fn run(&mut self, group: u32, t_max: f32) {
         let bvh = &self.geometry.groups[group as usize];
         if let Some(prepared) = TraversalRay::new(&self.ray, &bvh.bounds()) {
-            bvh.traverse(&prepared, t_max, self);
+            self.geometry.kernel.traverse(bvh, &prepared, t_max, self);
         }
     }
 
@@ -164,8 +174,21 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Search<'_, F, ANY> {
         if !(self.filter)(&hit) {
             return Verdict::Pass;
         }
-        self.best = Some(hit);
-        if ANY { Verdict::Stop } else { Verdict::Shorten(t) }
+        self.accept(hit)
+    }
+
+    /// Takes a hit that is at least as near as the best one. That the order of visits does not decide between equals
+    /// keeps hits the same whatever the tree.
+    #[inline(always)]
+    fn accept(&mut self, hit: Hit) -> Verdict {
+        if ANY {
+            self.best = Some(hit);
+            return Verdict::Stop;
+        }
+        if self.best.is_none_or(|best| hit.t < best.t || order(&hit) < order(&best)) {
+            self.best = Some(hit);
+        }
+        Verdict::Shorten(hit.t)
     }
 
     fn enter(&mut self, index: u32, t_max: f32) -> Verdict {
@@ -178,14 +201,13 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Search<'_, F, ANY> {
             best: None,
         };
         inner.run(instance.group, t_max);
-        match inner.best {
-            None => Verdict::Pass,
-            Some(hit) => {
-                self.best = Some(hit);
-                if ANY { Verdict::Stop } else { Verdict::Shorten(hit.t) }
-            }
-        }
+        inner.best.map_or(Verdict::Pass, |hit| self.accept(hit))
     }
+}
+
+/// Decides between hits at the same t; what stands in the world itself comes last.
+const fn order(hit: &Hit) -> (u32, u32, u32) {
+    (hit.instance, hit.geometry.0, hit.primitive)
 }
 
 impl<F: Fn(&Hit) -> bool, const ANY: bool> Visitor for Search<'_, F, ANY> {
@@ -202,7 +224,7 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Visitor for Search<'_, F, ANY> {
         let entity = &self.geometry.entities[item.geometry as usize];
         for candidate in entity.intersect(item.primitive, &self.ray).into_iter().flatten() {
             let t = candidate.t as f32;
-            if t <= 0.0 || t >= t_max {
+            if t <= 0.0 || t > t_max {
                 continue;
             }
             let verdict = self.consider(item, t, [candidate.u as f32, candidate.v as f32]);

@@ -1,6 +1,7 @@
 //! A node with eight children, and how a child is named in 32 bits.
 
 use super::TraversalRay;
+use super::lanes::Lanes;
 use crate::bvh::build::Box3;
 use std::ops::Range;
 
@@ -68,30 +69,59 @@ impl Node {
         self.children[slot] = child;
     }
 
-    /// Which children the ray meets with t in (0, `t_max`), one bit each, and where it enters them.
+    /// Which children the ray meets with t in (0, `t_max`], one bit each, and where it enters them; `far` is `t_max`
+    /// with room for rounding.
     ///
     /// The comparisons let NaN lose: 0 * infinity arises where a ray runs within a plane, and such a plane bounds
     /// nothing.
     #[inline(always)]
-    pub(super) fn test(&self, ray: &TraversalRay, t_max: f32) -> (u32, [f32; 8]) {
-        let mut near = [0.0_f32; 8];
-        let mut far = [t_max; 8];
-        for axis in 0..3 {
-            let inverse = ray.inverse[axis];
-            let near_plane = &self.planes[ray.near_plane[axis]];
-            let far_plane = &self.planes[ray.far_plane[axis]];
-            let (near_origin, far_origin) = (ray.near_origin[axis], ray.far_origin[axis]);
-            for child in 0..8 {
-                let enter = (near_plane[child] - near_origin) * inverse;
-                let leave = (far_plane[child] - far_origin) * inverse;
-                near[child] = if enter > near[child] { enter } else { near[child] };
-                far[child] = if leave < far[child] { leave } else { far[child] };
-            }
-        }
-        let mut mask = 0;
-        for child in 0..8 {
-            mask |= u32::from(near[child] <= far[child] * TraversalRay::WIDEN) << child;
-        }
-        (mask, near)
+    pub(super) fn test<L: Lanes>(&self, lanes: L, ray: &SlabRay<L>, far: L::Floats) -> (u32, L::Floats) {
+        let zero = lanes.splat(0.0);
+        let [ex, ey, ez] = [self.enter(lanes, ray, 0), self.enter(lanes, ray, 1), self.enter(lanes, ray, 2)];
+        let [lx, ly, lz] = [self.leave(lanes, ray, 0), self.leave(lanes, ray, 1), self.leave(lanes, ray, 2)];
+        let near = lanes.max(lanes.max(ex, ey), lanes.max(ez, zero));
+        let far = lanes.min(lanes.min(lx, ly), lanes.min(lz, far));
+        (lanes.at_most(near, far), near)
     }
+
+    #[inline(always)]
+    fn enter<L: Lanes>(&self, lanes: L, ray: &SlabRay<L>, axis: usize) -> L::Floats {
+        let plane = lanes.load(&self.planes[ray.near_plane[axis]]);
+        lanes.mul(lanes.sub(plane, ray.near_origin[axis]), ray.inverse[axis])
+    }
+
+    #[inline(always)]
+    fn leave<L: Lanes>(&self, lanes: L, ray: &SlabRay<L>, axis: usize) -> L::Floats {
+        let plane = lanes.load(&self.planes[ray.far_plane[axis]]);
+        lanes.mul(lanes.sub(plane, ray.far_origin[axis]), ray.inverse_far[axis])
+    }
+}
+
+/// What the test of boxes needs of a ray, eightfold.
+pub(super) struct SlabRay<L: Lanes> {
+    near_origin: [L::Floats; 3],
+    far_origin: [L::Floats; 3],
+    inverse: [L::Floats; 3],
+    inverse_far: [L::Floats; 3],
+    near_plane: [usize; 3],
+    far_plane: [usize; 3],
+}
+
+impl<L: Lanes> SlabRay<L> {
+    #[inline(always)]
+    pub(super) fn new(lanes: L, ray: &TraversalRay) -> Self {
+        Self {
+            near_origin: splats(lanes, ray.near_origin),
+            far_origin: splats(lanes, ray.far_origin),
+            inverse: splats(lanes, ray.inverse),
+            inverse_far: splats(lanes, ray.inverse_far),
+            near_plane: ray.near_plane,
+            far_plane: ray.far_plane,
+        }
+    }
+}
+
+#[inline(always)]
+fn splats<L: Lanes>(lanes: L, [x, y, z]: [f32; 3]) -> [L::Floats; 3] {
+    [lanes.splat(x), lanes.splat(y), lanes.splat(z)]
 }

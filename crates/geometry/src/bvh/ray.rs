@@ -14,6 +14,8 @@ pub(crate) struct TraversalRay {
     pub(super) direction: [f32; 3],
     /// Reciprocal direction; infinite where the direction is 0.
     pub(super) inverse: [f32; 3],
+    /// The same for the planes where the ray leaves.
+    pub(super) inverse_far: [f32; 3],
     pub(super) near_origin: [f32; 3],
     pub(super) far_origin: [f32; 3],
     /// Which of the six planes of a box the ray enters through, per axis.
@@ -34,11 +36,11 @@ pub(super) struct Shear {
 }
 
 impl TraversalRay {
-    /// Factor on the far end: three roundings on each side of the comparison.
-    pub(super) const WIDEN: f32 = 1.0 + 3.0 * f32::EPSILON;
+    /// Factor on the far end: three roundings on each side of the comparison and one of a product with the factor.
+    pub(super) const WIDEN: f32 = 1.0 + 4.0 * f32::EPSILON;
 
     /// Prepares a ray for a tree with these bounds; `None` for rays that are not finite or have no direction.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(ray: &Ray, bounds: &Bounds3) -> Option<Self> {
         if !ray.origin.is_finite() || !ray.direction.is_finite() {
             return None;
@@ -51,19 +53,29 @@ impl TraversalRay {
         }
         let reach = (bounds.max - ray.origin).abs().max((bounds.min - ray.origin).abs()).max_element();
         let margin = 5.0 * f32::EPSILON * reach;
-        let is_negative = direction.map(f32::is_sign_negative);
-        let step = is_negative.map(|negative| if negative { -margin } else { margin });
-        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
-        let scale = 1.0 / direction[z];
+        let [sx, sy, sz] =
+            [step(direction[0], margin), step(direction[1], margin), step(direction[2], margin)];
+        let inverse = [1.0 / direction[0], 1.0 / direction[1], 1.0 / direction[2]];
+        let near_plane = |axis: usize| if direction[axis].is_sign_negative() { axis + 3 } else { axis };
+        let near_plane = [near_plane(0), near_plane(1), near_plane(2)];
+        let (x, y) = ([1, 2, 0][z], [2, 0, 1][z]);
+        let scale = inverse[z];
         Some(Self {
             origin,
             direction,
-            inverse: direction.map(|d| 1.0 / d),
-            near_origin: std::array::from_fn(|axis| origin[axis] + step[axis]),
-            far_origin: std::array::from_fn(|axis| origin[axis] - step[axis]),
-            near_plane: std::array::from_fn(|axis| if is_negative[axis] { axis + 3 } else { axis }),
-            far_plane: std::array::from_fn(|axis| if is_negative[axis] { axis } else { axis + 3 }),
+            inverse,
+            inverse_far: [inverse[0] * Self::WIDEN, inverse[1] * Self::WIDEN, inverse[2] * Self::WIDEN],
+            near_origin: [origin[0] + sx, origin[1] + sy, origin[2] + sz],
+            far_origin: [origin[0] - sx, origin[1] - sy, origin[2] - sz],
+            near_plane,
+            far_plane: [3 - near_plane[0], 5 - near_plane[1], 7 - near_plane[2]],
             shear: Shear { axes: [x, y, z], x: -direction[x] * scale, y: -direction[y] * scale, z: scale },
         })
     }
+}
+
+/// The margin in the sense of a direction.
+#[inline(always)]
+const fn step(direction: f32, margin: f32) -> f32 {
+    if direction.is_sign_negative() { -margin } else { margin }
 }

@@ -1,9 +1,10 @@
 use etendue_math::{Bounds3, Point3, Ray, Rng, Vector3, offset_ray_origin};
 
 use super::build::Box3;
-use super::node::{Node, leaf, leaf_range};
+use super::lanes::{Lanes, Portable};
+use super::node::{Node, SlabRay, leaf, leaf_range};
 use super::{BuildPrimitive, Bvh, PrimitiveRef, TraversalRay, build, intersect_triangle};
-use crate::test_support::{any, ball, brute_force, direction, point_in_cube, ray, single, soup};
+use crate::test_support::{any, ball, brute_force, cube, direction, point_in_cube, ray, single, soup};
 use crate::{Hit, Shape, TriangleMesh};
 use etendue_math::Transform;
 
@@ -13,7 +14,7 @@ fn slab(min: [f32; 3], max: [f32; 3], ray: &Ray, t_max: f32) -> bool {
     let bounds =
         Bounds3 { min: Point3::new(min[0], min[1], min[2]), max: Point3::new(max[0], max[1], max[2]) };
     let prepared = TraversalRay::new(ray, &bounds).expect("the ray is finite");
-    node.test(&prepared, t_max).0 == 1 << 3
+    node.test(Portable, &SlabRay::new(Portable, &prepared), Portable.splat(t_max)).0 == 1 << 3
 }
 
 /// SPEC ACC-7: a box is met exactly where three slabs overlap, also for directions along an axis.
@@ -110,23 +111,24 @@ fn visibility_is_symmetric() {
     assert!(n_different <= N / 10_000, "{n_different} of {N} differ");
 }
 
+/// A slope of 2 n^2 triangles over the square [0, n]^2.
+fn grid(n: u32) -> TriangleMesh {
+    let mut mesh = TriangleMesh::default();
+    for (j, i) in (0..=n).flat_map(|j| (0..=n).map(move |i| (j, i))) {
+        mesh.positions.push(Point3::new(i as f32, j as f32, 0.25 * (i as f32)));
+    }
+    for (j, i) in (0..n).flat_map(|j| (0..n).map(move |i| (j, i))) {
+        let a = j * (n + 1) + i;
+        mesh.indices.extend([[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]]);
+    }
+    mesh
+}
+
 /// Axis-parallel rays through a regular grid run along edges and box planes; they must hit all the same.
 #[test]
 fn rays_along_grid_lines_hit() {
     const N: u32 = 16;
-    let mut mesh = TriangleMesh::default();
-    for j in 0..=N {
-        for i in 0..=N {
-            mesh.positions.push(Point3::new(i as f32, j as f32, 0.25 * (i as f32)));
-        }
-    }
-    for j in 0..N {
-        for i in 0..N {
-            let a = j * (N + 1) + i;
-            mesh.indices.push([a, a + 1, a + N + 2]);
-            mesh.indices.push([a, a + N + 2, a + N + 1]);
-        }
-    }
+    let mesh = grid(N);
     let (geometry, _) = single(Shape::Triangles(mesh), Transform::IDENTITY, false);
     for j in 0..=4 * N {
         for i in 0..=4 * N {
@@ -144,7 +146,7 @@ fn rays_along_grid_lines_hit() {
 /// SPEC GEO-8: no ray leaves a closed surface, not even through an edge or a vertex.
 #[test]
 fn closed_surfaces_are_watertight() {
-    for (name, mesh) in [("ball", ball(4)), ("cube", crate::test_support::cube())] {
+    for (name, mesh) in [("ball", ball(4)), ("cube", cube())] {
         for offset in [Vector3::default(), Vector3::new(37.1, -12.7, 81.3)] {
             let (geometry, _) = single(Shape::Triangles(mesh.clone()), Transform::translate(offset), false);
             let mut rng = Rng::new(3, 5);
@@ -171,7 +173,7 @@ fn closed_surfaces_are_watertight() {
 /// error of the distance to it.
 #[test]
 fn rays_do_not_slip_through_corners() {
-    let (geometry, _) = single(Shape::Triangles(crate::test_support::cube()), Transform::IDENTITY, false);
+    let (geometry, _) = single(Shape::Triangles(cube()), Transform::IDENTITY, false);
     let mut rng = Rng::new(31, 0);
     let mut n_departures = 0;
     for _ in 0..60_000 {
@@ -239,7 +241,7 @@ fn degenerate_triangles_are_never_hit() {
 /// A refused candidate lets the ray pass to what lies behind.
 #[test]
 fn the_filter_sees_every_candidate_and_may_refuse_it() {
-    let (geometry, _) = single(Shape::Triangles(crate::test_support::cube()), Transform::IDENTITY, false);
+    let (geometry, _) = single(Shape::Triangles(cube()), Transform::IDENTITY, false);
     let ray = Ray::new(Point3::new(0.3, 0.2, 5.0), Vector3::new(0.0, 0.0, -1.0));
     let near = geometry.intersect(&ray, f32::INFINITY, &any).expect("the cube is ahead");
     assert!((near.t - 4.0).abs() < 1e-6);
@@ -248,6 +250,49 @@ fn the_filter_sees_every_candidate_and_may_refuse_it() {
     assert!((far.t - 6.0).abs() < 1e-6);
     assert!(geometry.occluded(&ray, f32::INFINITY, &refuse));
     assert!(!geometry.occluded(&ray, f32::INFINITY, &|_| false));
+}
+
+/// Hits of both kernels are the same to the last bit, whatever the mesh and wherever rays start.
+#[test]
+fn both_kernels_find_the_same_hits() {
+    let n_rays = if std::env::var_os("ETENDUE_SLOW").is_some_and(|v| v == "1") { 15_000_000 } else { 10_000 };
+    let shapes =
+        [cube(), ball(2), ball(6), grid(16), soup(3, 0.5, 1), soup(1500, 0.08, 2), soup(3000, 0.5, 3)];
+    let mut n_hits = 0;
+    for (i, mesh) in shapes.into_iter().enumerate() {
+        let (geometry, _) = single(Shape::Triangles(mesh.clone()), Transform::IDENTITY, false);
+        let (portable, _) = single(Shape::Triangles(mesh.clone()), Transform::IDENTITY, false);
+        let portable = portable.traced_portably();
+        let mut rng = Rng::new(17, i as u64);
+        for _ in 0..n_rays {
+            let ray = kernel_ray(&mut rng, &mesh);
+            let t_max = if rng.next_below(4) == 0 { rng.next_f32() } else { f32::INFINITY };
+            let hit = geometry.intersect(&ray, t_max, &any);
+            n_hits += usize::from(hit.is_some());
+            assert_eq!(hit, portable.intersect(&ray, t_max, &any), "{ray:?}");
+            assert_eq!(hit.is_some(), geometry.occluded(&ray, t_max, &any), "{ray:?}");
+            assert_eq!(hit.is_some(), portable.occluded(&ray, t_max, &any), "{ray:?}");
+        }
+    }
+    assert!(n_hits > n_rays, "{n_hits} hits");
+}
+
+/// A ray in any direction, along an axis, or towards a vertex or the middle of an edge.
+fn kernel_ray(rng: &mut Rng, mesh: &TriangleMesh) -> Ray {
+    let free = ray(rng, 1.5);
+    let [a, b, _] = mesh.indices[rng.next_below(mesh.indices.len() as u32) as usize];
+    let [a, b] = [a, b].map(|v| mesh.positions[v as usize]);
+    match rng.next_below(8) {
+        0 => Ray::new(free.origin, a - free.origin),
+        1 => Ray::new(free.origin, a.lerp(b, 0.5) - free.origin),
+        2 => Ray::new(a, free.direction),
+        3 => {
+            let mut along = Vector3::default();
+            along[rng.next_below(3) as usize] = if rng.next_below(2) == 0 { 1.0 } else { -1.0 };
+            Ray::new(free.origin, along)
+        }
+        _ => free,
+    }
 }
 
 fn triangles(n: usize, position: impl Fn(usize) -> [[f32; 3]; 3]) -> Bvh {

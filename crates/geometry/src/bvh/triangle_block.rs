@@ -1,4 +1,4 @@
-//! Four triangles at once, watertight.
+//! Eight triangles at once, watertight.
 //!
 //! Vertices are moved to the origin of the ray and sheared so that the ray becomes the z axis; the triangle is hit
 //! if its three edge functions at the origin of the xy plane have one sign (Woop, Benthin and Wald 2013,
@@ -7,193 +7,287 @@
 //! decides. Likewise the sign of t: where it lies within its error (Pharr et al. 2023, section 6.8.7), double precision
 //! tells on which side of the triangle the ray starts. A ray that leaves a triangle by the error bound of its point does not
 //! meet it again, and one that starts right before another, in a corner, does not slip through.
+//!
+//! Triangles come in pairs that share an edge, as most do in a mesh: pair `i` is the quadrilateral p0 p1 p2 p3, cut into
+//! p0 p1 p2 (lane `i`) and p2 p3 p0 (lane `i + 4`). Two rows of eight, p0 p2 and p1 p3, then hold four pairs, and
+//! swapping the halves of the first row gives the third corners. Only lanes that pass the test of signs are finished,
+//! one by one and with their corners in the order of the mesh, so that a hit does not depend on how triangles are paired.
 
 use glam::DVec3;
 
 use super::PrimitiveRef;
+use super::lanes::{Lanes, Portable};
+use super::pair::Pair;
 use super::ray::TraversalRay;
 
-/// Up to four triangles; unused places hold NaN and are never hit.
+/// Up to four pairs of triangles; unused places hold NaN and are never hit.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(16))]
+#[repr(C, align(64))]
 pub(super) struct TriangleBlock {
-    /// x, y, z of the first, then of the second and the third vertex.
-    vertices: [[f32; 4]; 9],
+    /// x, y, z of p0 of each pair, then of p2.
+    shared: [[f32; 8]; 3],
+    /// x, y, z of p1 of each pair, then of p3.
+    apart: [[f32; 8]; 3],
+    primitive: [u32; 8],
     geometry: [u32; 4],
-    primitive: [u32; 4],
+    /// Which corner of its mesh's triangle is the first here.
+    first_corner: [u8; 8],
 }
 
-/// Where a ray hits each of four triangles.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lanes {
-    pub(super) t: [f32; 4],
-    pub(super) b1: [f32; 4],
-    pub(super) b2: [f32; 4],
-}
-
-/// Sheared vertices, coordinate by coordinate.
-type Sheared = [[[f32; 4]; 3]; 3];
+/// A triangle that a ray hits: t and the weights of the second and third vertex.
+pub(super) type TriangleHit = (f32, [f32; 2]);
 
 impl TriangleBlock {
     /// No triangle.
-    pub(super) const EMPTY: Self =
-        Self { vertices: [[f32::NAN; 4]; 9], geometry: [u32::MAX; 4], primitive: [u32::MAX; 4] };
+    pub(super) const EMPTY: Self = Self {
+        shared: [[f32::NAN; 8]; 3],
+        apart: [[f32::NAN; 8]; 3],
+        primitive: [u32::MAX; 8],
+        geometry: [u32::MAX; 4],
+        first_corner: [0; 8],
+    };
 
-    /// Puts a triangle into a place.
-    pub(super) fn set(&mut self, lane: usize, reference: PrimitiveRef, triangle: &[[f32; 3]; 3]) {
-        for (vertex, p) in triangle.iter().enumerate() {
-            for (axis, coordinate) in p.iter().enumerate() {
-                self.vertices[vertex * 3 + axis][lane] = *coordinate;
-            }
+    /// Puts a pair of triangles into a place. `vertices` gives the corners of a triangle.
+    pub(super) fn set(&mut self, place: usize, pair: Pair, vertices: impl Fn(PrimitiveRef) -> [[f32; 3]; 3]) {
+        let first = vertices(pair.first);
+        self.geometry[place] = pair.first.geometry;
+        let Some(second) = pair.second() else {
+            self.set_triangle(place, pair.first.primitive, &first, 0);
+            return;
+        };
+        let vertices = vertices(second);
+        let (i, j) = super::pair::common_edge(&first, &vertices).expect("a pair has a common edge");
+        self.set_triangle(place, pair.first.primitive, &first, (i + 1) % 3);
+        self.set_triangle(place + 4, second.primitive, &vertices, (j + 1) % 3);
+    }
+
+    /// Sets the first two corners of a lane, and the third by way of its twin.
+    fn set_triangle(&mut self, lane: usize, primitive: u32, triangle: &[[f32; 3]; 3], first_corner: usize) {
+        let corner = |i: usize| triangle[(first_corner + i) % 3];
+        for (axis, ((a, b), c)) in corner(0).into_iter().zip(corner(1)).zip(corner(2)).enumerate() {
+            self.shared[axis][lane] = a;
+            self.apart[axis][lane] = b;
+            self.shared[axis][lane ^ 4] = c;
         }
-        self.geometry[lane] = reference.geometry;
-        self.primitive[lane] = reference.primitive;
+        self.primitive[lane] = primitive;
+        self.first_corner[lane] = first_corner as u8;
     }
 
-    /// What a place holds.
-    #[inline]
-    pub(super) const fn reference(&self, lane: usize) -> PrimitiveRef {
-        PrimitiveRef { geometry: self.geometry[lane], primitive: self.primitive[lane] }
-    }
-
-    /// Which triangles the ray hits with t in (0, `t_max`), one bit each, and where.
+    /// What a lane holds.
     #[inline(always)]
-    pub(super) fn intersect(&self, ray: &TraversalRay, t_max: f32) -> (u32, Lanes) {
-        let sheared = self.sheared(ray);
-        let [a, b, c] = &sheared;
-        let mut edges = [[0.0_f32; 4]; 3];
-        let mut zero = [0_u32; 4];
-        for l in 0..4 {
-            edges[0][l] = b[0][l] * c[1][l] - b[1][l] * c[0][l];
-            edges[1][l] = c[0][l] * a[1][l] - c[1][l] * a[0][l];
-            edges[2][l] = a[0][l] * b[1][l] - a[1][l] * b[0][l];
-            zero[l] = u32::from((edges[0][l] == 0.0) | (edges[1][l] == 0.0) | (edges[2][l] == 0.0));
-        }
-        if (zero[0] | zero[1] | zero[2] | zero[3]) != 0 {
-            edges_in_double(&sheared, &mut edges);
-        }
-        let mut lanes = Lanes { t: [0.0; 4], b1: [0.0; 4], b2: [0.0; 4] };
-        let mut hit = [0_u32; 4];
-        for l in 0..4 {
-            let (e0, e1, e2) = (edges[0][l], edges[1][l], edges[2][l]);
-            let inside =
-                ((e0 >= 0.0) & (e1 >= 0.0) & (e2 >= 0.0)) | ((e0 <= 0.0) & (e1 <= 0.0) & (e2 <= 0.0));
-            let determinant = e0 + e1 + e2;
-            let inverse = 1.0 / determinant;
-            let t = (e0 * a[2][l] + e1 * b[2][l] + e2 * c[2][l]) * ray.shear.z * inverse;
-            lanes.t[l] = t;
-            lanes.b1[l] = e1 * inverse;
-            lanes.b2[l] = e2 * inverse;
-            hit[l] = u32::from(inside & (determinant != 0.0) & (t < t_max));
-        }
-        let mask = hit[0] | hit[1] << 1 | hit[2] << 2 | hit[3] << 3;
+    pub(super) const fn reference(&self, lane: usize) -> PrimitiveRef {
+        PrimitiveRef { geometry: self.geometry[lane & 3], primitive: self.primitive[lane & 7] }
+    }
+
+    /// Which triangles the ray hits with t in (0, `t_max`], one bit each, and where.
+    #[inline(always)]
+    pub(super) fn intersect<L: Lanes>(&self, lanes: L, ray: &TraversalRay, t_max: f32) -> (u32, Hits) {
+        let a = shear_rows(lanes, &self.shared, ray);
+        let b = shear_rows(lanes, &self.apart, ray);
+        let c = [lanes.swap_halves(a[0]), lanes.swap_halves(a[1]), lanes.swap_halves(a[2])];
+        let mut edges = [edge_rows(lanes, b, c), edge_rows(lanes, c, a), edge_rows(lanes, a, b)];
+        let mut mask = have_one_sign(lanes, edges);
         if mask == 0 {
-            return (0, lanes);
+            return (0, Hits::NONE);
         }
-        self.decide_ahead(mask, ray, &sheared, &edges, lanes)
+        let sizes = [lanes.abs(edges[0]), lanes.abs(edges[1]), lanes.abs(edges[2])];
+        let zeros = lanes.at_most(lanes.min(lanes.min(sizes[0], sizes[1]), sizes[2]), lanes.splat(0.0));
+        if zeros & mask != 0 {
+            let stored = [lanes.store(edges[0]), lanes.store(edges[1]), lanes.store(edges[2])];
+            let decided = self.decide_edges(zeros & mask, ray, stored);
+            edges = [lanes.load(&decided[0]), lanes.load(&decided[1]), lanes.load(&decided[2])];
+            mask &= have_one_sign(lanes, edges);
+        }
+        let determinant = ordered_sum(lanes, edges);
+        let inverse = lanes.div(lanes.splat(1.0), determinant);
+        let heights = [lanes.mul(edges[0], a[2]), lanes.mul(edges[1], b[2]), lanes.mul(edges[2], c[2])];
+        let t = lanes.mul(lanes.mul(ordered_sum(lanes, heights), lanes.splat(ray.shear.z)), inverse);
+        // NaN, where all edge functions are 0, is lost here.
+        mask &= lanes.at_most(t, lanes.splat(t_max));
+        if mask == 0 {
+            return (0, Hits::NONE);
+        }
+        let error = t_error(lanes, [a, b, c], edges, ray.shear.z);
+        let error = lanes.mul(error, lanes.abs(inverse));
+        let mut t = lanes.store(t);
+        let unsure = mask & lanes.at_most(lanes.abs(lanes.load(&t)), error);
+        if unsure != 0 {
+            self.decide_t(unsure, ray, &mut t);
+        }
+        mask &= !lanes.at_most(lanes.load(&t), lanes.splat(0.0));
+        let edges = [lanes.store(edges[0]), lanes.store(edges[1]), lanes.store(edges[2])];
+        (mask, Hits { t, edges, inverse: lanes.store(inverse) })
     }
 
-    /// Keeps the hits that lie ahead of the origin.
-    #[inline]
-    fn decide_ahead(
-        &self,
-        mask: u32,
-        ray: &TraversalRay,
-        sheared: &Sheared,
-        edges: &[[f32; 4]; 3],
-        mut lanes: Lanes,
-    ) -> (u32, Lanes) {
-        let mut result = mask;
-        for lane in 0..4 {
-            if mask >> lane & 1 == 0 {
-                continue;
-            }
-            let t = lanes.t[lane];
-            let error = t_error(lane, sheared, edges, ray.shear.z);
-            if t.abs() <= error {
-                lanes.t[lane] = self.t_in_double(lane, ray);
-            }
-            let is_ahead = lanes.t[lane] > 0.0;
-            if !is_ahead {
-                result &= !(1 << lane);
-            }
-        }
-        (result, lanes)
+    /// The weights of the second and third vertex.
+    #[inline(always)]
+    pub(super) fn weights(&self, lane: usize, hits: &Hits) -> [f32; 2] {
+        let [_, j, k] = self.mesh_order(lane);
+        [hits.edges[j][lane] * hits.inverse[lane], hits.edges[k][lane] * hits.inverse[lane]]
     }
 
-    /// Where the ray meets the plane of a triangle; 0 if it runs parallel. Only the sign of tiny values matters.
+    /// Which corners of a lane are the first, second and third in the mesh.
+    #[inline(always)]
+    const fn mesh_order(&self, lane: usize) -> [usize; 3] {
+        match self.first_corner[lane] {
+            0 => [0, 1, 2],
+            1 => [2, 0, 1],
+            _ => [1, 2, 0],
+        }
+    }
+
+    /// Corners of a triangle in the order of the mesh.
+    fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
+        let point = |rows: &[[f32; 8]; 3], lane: usize| [rows[0][lane], rows[1][lane], rows[2][lane]];
+        let here = [point(&self.shared, lane), point(&self.apart, lane), point(&self.shared, lane ^ 4)];
+        self.mesh_order(lane).map(|corner| here[corner])
+    }
+
+    /// Recomputes edge functions, of which some are 0, in double precision.
     #[cold]
     #[inline(never)]
-    fn t_in_double(&self, lane: usize, ray: &TraversalRay) -> f32 {
-        let vertex = |v: usize| {
-            DVec3::from_array(std::array::from_fn(|axis| self.vertices[v * 3 + axis][lane].into()))
-        };
-        let a = vertex(0);
-        let n = (vertex(1) - a).cross(vertex(2) - a);
-        let slope = n.dot(DVec3::from_array(ray.direction.map(f64::from)));
-        let height = n.dot(a - DVec3::from_array(ray.origin.map(f64::from)));
-        let t = if slope == 0.0 { 0.0 } else { height / slope };
-        // A tiny value must not lose its sign.
-        if t > 0.0 { (t as f32).max(f32::MIN_POSITIVE) } else { (t as f32).min(0.0) }
-    }
-
-    #[inline(always)]
-    fn sheared(&self, ray: &TraversalRay) -> Sheared {
-        let [kx, ky, kz] = ray.shear.axes;
-        let (ox, oy, oz) = (ray.origin[kx], ray.origin[ky], ray.origin[kz]);
-        let mut result = [[[0.0_f32; 4]; 3]; 3];
-        for (vertex, out) in result.iter_mut().enumerate() {
-            let (px, py, pz) = (
-                &self.vertices[vertex * 3 + kx],
-                &self.vertices[vertex * 3 + ky],
-                &self.vertices[vertex * 3 + kz],
-            );
-            for l in 0..4 {
-                let z = pz[l] - oz;
-                out[0][l] = (px[l] - ox) + ray.shear.x * z;
-                out[1][l] = (py[l] - oy) + ray.shear.y * z;
-                out[2][l] = z;
+    fn decide_edges(&self, mask: u32, ray: &TraversalRay, edges: [[f32; 8]; 3]) -> [[f32; 8]; 3] {
+        let mut edges = edges;
+        for lane in (0..8).filter(|lane| mask >> lane & 1 != 0) {
+            let exact = edges_in_double(&shear(ray, &self.corners(lane)));
+            for (exact, corner) in exact.into_iter().zip(self.mesh_order(lane)) {
+                edges[corner][lane] = exact;
             }
         }
-        result
+        edges
+    }
+
+    /// Recomputes t in double precision.
+    #[cold]
+    #[inline(never)]
+    fn decide_t(&self, mask: u32, ray: &TraversalRay, t: &mut [f32; 8]) {
+        for lane in (0..8).filter(|lane| mask >> lane & 1 != 0) {
+            t[lane] = t_in_double(ray, &self.corners(lane));
+        }
     }
 }
 
+/// Where a ray hits eight triangles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hits {
+    pub(super) t: [f32; 8],
+    /// Edge functions opposite to the corners, in the order of the block.
+    edges: [[f32; 8]; 3],
+    /// Reciprocal of their sum.
+    inverse: [f32; 8],
+}
+
+impl Hits {
+    const NONE: Self = Self { t: [0.0; 8], edges: [[0.0; 8]; 3], inverse: [0.0; 8] };
+}
+
+/// The same test on a single triangle.
+pub(super) fn intersect(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> Option<TriangleHit> {
+    let mut block = TriangleBlock::EMPTY;
+    block.set_triangle(0, 0, corners, 0);
+    let (mask, hits) = block.intersect(Portable, ray, f32::MAX);
+    (mask != 0).then(|| (hits.t[0], block.weights(0, &hits)))
+}
+
+/// Eight points seen from the ray, which runs along z.
+#[inline(always)]
+fn shear_rows<L: Lanes>(lanes: L, rows: &[[f32; 8]; 3], ray: &TraversalRay) -> [L::Floats; 3] {
+    let [kx, ky, kz] = ray.shear.axes;
+    let x = lanes.sub(lanes.load(&rows[kx]), lanes.splat(ray.origin[kx]));
+    let y = lanes.sub(lanes.load(&rows[ky]), lanes.splat(ray.origin[ky]));
+    let z = lanes.sub(lanes.load(&rows[kz]), lanes.splat(ray.origin[kz]));
+    [
+        lanes.add(x, lanes.mul(lanes.splat(ray.shear.x), z)),
+        lanes.add(y, lanes.mul(lanes.splat(ray.shear.y), z)),
+        z,
+    ]
+}
+
+/// Twice the area, seen from the ray, of the triangle with the origin.
+#[inline(always)]
+fn edge_rows<L: Lanes>(lanes: L, p: [L::Floats; 3], q: [L::Floats; 3]) -> L::Floats {
+    lanes.sub(lanes.mul(p[0], q[1]), lanes.mul(p[1], q[0]))
+}
+
+/// One bit for each lane whose edge functions are all at least or all at most 0.
+#[inline(always)]
+fn have_one_sign<L: Lanes>(lanes: L, edges: [L::Floats; 3]) -> u32 {
+    // Where there is no triangle, the first and the last are NaN: they must come second to stay.
+    let least = lanes.min(edges[1], lanes.min(edges[0], edges[2]));
+    let greatest = lanes.max(edges[1], lanes.max(edges[0], edges[2]));
+    let zero = lanes.splat(0.0);
+    lanes.at_most(zero, least) | lanes.at_most(greatest, zero)
+}
+
+/// A sum whose rounding does not depend on the order of its terms: least and greatest first.
+#[inline(always)]
+fn ordered_sum<L: Lanes>(lanes: L, [a, b, c]: [L::Floats; 3]) -> L::Floats {
+    let (low, high) = (lanes.min(a, b), lanes.max(a, b));
+    let middle = lanes.max(low, lanes.min(high, c));
+    lanes.add(lanes.add(lanes.min(low, c), lanes.max(high, c)), middle)
+}
+
+/// One triangle seen from the ray.
+fn shear(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> [[f32; 3]; 3] {
+    let [kx, ky, kz] = ray.shear.axes;
+    corners.map(|p| {
+        let z = p[kz] - ray.origin[kz];
+        [(p[kx] - ray.origin[kx]) + ray.shear.x * z, (p[ky] - ray.origin[ky]) + ray.shear.y * z, z]
+    })
+}
+
+/// Where the ray meets the plane of a triangle; 0 if it runs parallel. Only the sign of tiny values matters.
+fn t_in_double(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> f32 {
+    let [a, b, c] = corners.map(|p| DVec3::from_array(p.map(f64::from)));
+    let n = (b - a).cross(c - a);
+    let slope = n.dot(DVec3::from_array(ray.direction.map(f64::from)));
+    let height = n.dot(a - DVec3::from_array(ray.origin.map(f64::from)));
+    let t = if slope == 0.0 { 0.0 } else { height / slope };
+    // A tiny value must not lose its sign.
+    if t > 0.0 { (t as f32).max(f32::MIN_POSITIVE) } else { (t as f32).min(0.0) }
+}
+
 /// Edge functions in double precision, where products of single-precision numbers are exact.
-#[cold]
-#[inline(never)]
-fn edges_in_double(sheared: &Sheared, edges: &mut [[f32; 4]; 3]) {
+fn edges_in_double(sheared: &[[f32; 3]; 3]) -> [f32; 3] {
     let [a, b, c] = sheared;
-    let edge = |p: &[[f32; 4]; 3], q: &[[f32; 4]; 3], l: usize| {
-        let exact = f64::from(p[0][l]) * f64::from(q[1][l]) - f64::from(p[1][l]) * f64::from(q[0][l]);
+    let edge = |p: &[f32; 3], q: &[f32; 3]| {
+        let exact = f64::from(p[0]) * f64::from(q[1]) - f64::from(p[1]) * f64::from(q[0]);
         let rounded = exact as f32;
         // A tiny value must not lose its sign.
         if rounded == 0.0 && exact != 0.0 { f32::MIN_POSITIVE.copysign(exact as f32) } else { rounded }
     };
-    for (edges, (p, q)) in edges.iter_mut().zip([(b, c), (c, a), (a, b)]) {
-        *edges = std::array::from_fn(|l| edge(p, q, l));
-    }
+    [edge(b, c), edge(c, a), edge(a, b)]
 }
 
-/// Bound of the error of t (Pharr et al. 2023, section 6.8.7).
-#[inline]
-fn t_error(lane: usize, sheared: &Sheared, edges: &[[f32; 4]; 3], scale: f32) -> f32 {
-    const fn gamma(n: u32) -> f32 {
-        let x = n as f32 * (f32::EPSILON / 2.0);
-        x / (1.0 - x)
-    }
-    let largest = |axis: usize| {
-        sheared[0][axis][lane].abs().max(sheared[1][axis][lane].abs()).max(sheared[2][axis][lane].abs())
-    };
-    let max_x = largest(0);
-    let max_y = largest(1);
-    let max_z = largest(2);
-    let max_z_scaled = max_z * scale.abs();
-    let delta_z = gamma(3) * max_z_scaled;
-    let delta_x = gamma(5) * (max_x + max_z);
-    let delta_y = gamma(5) * (max_y + max_z);
-    let delta_e = 2.0 * (gamma(2) * max_x * max_y + delta_y * max_x + delta_x * max_y);
-    let max_e = edges[0][lane].abs().max(edges[1][lane].abs()).max(edges[2][lane].abs());
-    let determinant = edges[0][lane] + edges[1][lane] + edges[2][lane];
-    3.0 * (gamma(3) * max_e * max_z_scaled + delta_e * max_z_scaled + delta_z * max_e) / determinant.abs()
+/// Bound of the relative error of `n` roundings in a row (Pharr et al. 2023, section 6.8.1).
+const fn gamma(n: u32) -> f32 {
+    let x = n as f32 * (f32::EPSILON / 2.0);
+    x / (1.0 - x)
+}
+const GAMMA_2: f32 = gamma(2);
+const GAMMA_3: f32 = gamma(3);
+const GAMMA_5: f32 = gamma(5);
+
+/// Bound of the error of t, times the sum of the edge functions (Pharr et al. 2023, section 6.8.7).
+#[inline(always)]
+fn t_error<L: Lanes>(lanes: L, corners: [[L::Floats; 3]; 3], edges: [L::Floats; 3], scale: f32) -> L::Floats {
+    let max_x = largest(lanes, [corners[0][0], corners[1][0], corners[2][0]]);
+    let max_y = largest(lanes, [corners[0][1], corners[1][1], corners[2][1]]);
+    let max_z = largest(lanes, [corners[0][2], corners[1][2], corners[2][2]]);
+    let max_e = largest(lanes, edges);
+    let [gamma_2, gamma_3, gamma_5] = [lanes.splat(GAMMA_2), lanes.splat(GAMMA_3), lanes.splat(GAMMA_5)];
+    let max_z_scaled = lanes.mul(max_z, lanes.splat(scale.abs()));
+    let delta_z = lanes.mul(gamma_3, max_z_scaled);
+    let delta_x = lanes.mul(gamma_5, lanes.add(max_x, max_z));
+    let delta_y = lanes.mul(gamma_5, lanes.add(max_y, max_z));
+    let of_products = lanes.mul(gamma_2, lanes.mul(max_x, max_y));
+    let of_factors = lanes.add(lanes.mul(delta_y, max_x), lanes.mul(delta_x, max_y));
+    let delta_e = lanes.mul(lanes.splat(2.0), lanes.add(of_products, of_factors));
+    let of_t = lanes.mul(lanes.add(lanes.mul(gamma_3, max_e), delta_e), max_z_scaled);
+    lanes.mul(lanes.splat(3.0), lanes.add(of_t, lanes.mul(delta_z, max_e)))
+}
+
+#[inline(always)]
+fn largest<L: Lanes>(lanes: L, v: [L::Floats; 3]) -> L::Floats {
+    lanes.max(lanes.max(lanes.abs(v[0]), lanes.abs(v[1])), lanes.abs(v[2]))
 }

@@ -11,7 +11,7 @@ use super::quadric::{Quadric, QuadricShape};
 use super::sphere::Sphere;
 use super::triangles::Triangles;
 use super::{Candidates, LocalSurface, Shape};
-use crate::bvh::{BuildPrimitive, PrimitiveRef, intersect_triangle};
+use crate::bvh::{BuildPrimitive, PrimitiveRef, intersect_triangle, pair_up};
 use crate::double;
 use crate::geometry::GeometryCounts;
 use crate::hit::{Reference, ShapeSample};
@@ -224,30 +224,14 @@ impl Entity {
     }
 }
 
-/// Appends the triangles that can be hit, in parallel.
+/// Appends the triangles that can be hit, in pairs, in parallel.
 fn append_triangles(triangles: &Triangles, geometry: u32, primitives: &mut Vec<BuildPrimitive>) {
-    const CHUNK: usize = 1 << 13;
-    let first = primitives.len();
-    primitives.resize(first + triangles.mesh().indices.len(), BuildPrimitive::EMPTY);
-    let n_left_out: usize = primitives[first..]
-        .par_chunks_mut(CHUNK)
-        .enumerate()
-        .map(|(chunk, places)| {
-            let mut n_left_out = 0;
-            for (i, place) in places.iter_mut().enumerate() {
-                let triangle = (chunk * CHUNK + i) as u32;
-                if triangles.is_valid(triangle) {
-                    let corners = triangles.positions(triangle).map(|p| [p.x, p.y, p.z]);
-                    *place =
-                        BuildPrimitive::triangle(PrimitiveRef { geometry, primitive: triangle }, &corners);
-                } else {
-                    n_left_out += 1;
-                }
-            }
-            n_left_out
-        })
-        .sum();
-    if n_left_out > 0 {
-        primitives.retain(|primitive| !primitive.is_empty());
-    }
+    const CHUNK: u32 = 1 << 13;
+    let n = triangles.mesh().indices.len() as u32;
+    let corners = |t: u32| triangles.is_valid(t).then(|| triangles.positions(t).map(|p| [p.x, p.y, p.z]));
+    let pairs: Vec<Vec<BuildPrimitive>> = (0..n.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| pair_up(geometry, chunk * CHUNK..n.min((chunk + 1) * CHUNK), corners))
+        .collect();
+    primitives.extend(pairs.into_iter().flatten());
 }

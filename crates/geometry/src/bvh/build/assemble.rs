@@ -34,14 +34,13 @@ pub(super) fn assemble(
         let first = (run >> 2) as usize;
         let mut block = TriangleBlock::EMPTY;
         for (lane, primitive) in primitives[first..=first + (run & 3) as usize].iter().enumerate() {
-            let reference = primitive.reference();
-            block.set(lane, reference, &vertices(reference));
+            block.set(lane, primitive.pair(), vertices);
         }
         block
     };
     let blocks = leaves.blocks.par_iter().with_min_len(256).map(block).collect();
     leaves.items.shrink_to_fit();
-    Bvh { nodes, blocks, items: leaves.items, bounds }
+    Bvh::new(nodes, blocks, leaves.items, bounds)
 }
 
 /// Contents of the leaves so far.
@@ -65,7 +64,7 @@ impl Leaves {
     fn append_items(&mut self, run: u32, primitives: &[BuildPrimitive]) -> u32 {
         let range = leaf_range(run);
         let first = self.items.len();
-        self.items.extend(primitives[range.clone()].iter().map(BuildPrimitive::reference));
+        self.items.extend(primitives[range.clone()].iter().map(BuildPrimitive::item_reference));
         leaf(ITEMS, first, range.len())
     }
 }

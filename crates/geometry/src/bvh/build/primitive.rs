@@ -7,6 +7,7 @@ use etendue_math::Bounds3;
 use glam::{Vec4, Vec4Swizzles};
 
 use crate::bvh::PrimitiveRef;
+use crate::bvh::pair::Pair;
 
 /// A box as arrays, quick to index by axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,14 +70,14 @@ pub(crate) struct BuildPrimitive {
 const PLAIN: u32 = 1 << 30;
 /// Set in the number of a primitive that is no triangle.
 const ITEM: u32 = 1 << 31;
+/// The upper bits of the entity of a pair of triangles hold the distance to the second one.
+const DISTANCE_SHIFT: u32 = 28;
 
 impl BuildPrimitive {
-    /// Takes a place until it is filled.
-    pub(crate) const EMPTY: Self = Self { bounds: Box4::EMPTY };
-
     /// A triangle with corners that are finite.
     #[inline]
     pub(crate) fn triangle(reference: PrimitiveRef, vertices: &[[f32; 3]; 3]) -> Self {
+        assert!(reference.geometry < 1 << DISTANCE_SHIFT, "too many shapes");
         let [a, b, c] = vertices.map(|[x, y, z]| Vec4::new(x, y, z, 0.0));
         Self::new(reference, 0, a.min(b).min(c), a.max(b).max(c))
     }
@@ -97,16 +98,36 @@ impl BuildPrimitive {
         Self { bounds: Box4 { min, max } }
     }
 
-    /// True if the place was never filled.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.bounds.min.x > self.bounds.max.x
+    /// This triangle and another one of its mesh, `distance` behind it.
+    #[inline]
+    pub(crate) fn paired(&self, second: &Self, distance: u32) -> Self {
+        debug_assert!(distance <= Pair::MAX_DISTANCE);
+        let bounds = self.bounds.union(&second.bounds);
+        let geometry = self.bounds.min.w.to_bits() ^ distance << DISTANCE_SHIFT;
+        let min = bounds.min.with_w(f32::from_bits(geometry));
+        Self { bounds: Box4 { min, max: bounds.max.with_w(self.bounds.max.w) } }
     }
 
-    /// What the primitive is.
-    #[inline]
-    pub(super) fn reference(&self) -> PrimitiveRef {
-        let bits = |w: f32| w.to_bits() ^ PLAIN;
-        PrimitiveRef { geometry: bits(self.bounds.min.w), primitive: bits(self.bounds.max.w) & !ITEM }
+    /// Half the surface area of the box.
+    pub(crate) fn half_area(&self) -> f32 {
+        self.bounds.half_area()
+    }
+
+    fn bits(&self) -> [u32; 2] {
+        [self.bounds.min.w.to_bits() ^ PLAIN, self.bounds.max.w.to_bits() ^ PLAIN]
+    }
+
+    /// What a primitive is that is no triangle.
+    pub(super) fn item_reference(&self) -> PrimitiveRef {
+        let [geometry, primitive] = self.bits();
+        PrimitiveRef { geometry, primitive: primitive & !ITEM }
+    }
+
+    /// Which triangles the primitive is.
+    pub(super) fn pair(&self) -> Pair {
+        let [geometry, primitive] = self.bits();
+        let first = PrimitiveRef { geometry: geometry & ((1 << DISTANCE_SHIFT) - 1), primitive };
+        Pair { first, distance: geometry >> DISTANCE_SHIFT }
     }
 
     #[inline]
