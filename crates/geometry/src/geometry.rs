@@ -4,7 +4,7 @@ use etendue_math::{Bounds3, Point2, Ray};
 
 use crate::builder::WORLD;
 use crate::bvh::{Bvh, INSTANCE, Kernel, PrimitiveRef, TraversalRay, Verdict, Visitor};
-use crate::hit::{GeometryId, Hit, NO_INSTANCE, SurfacePoint};
+use crate::hit::{GeometryId, Hit, NO_INSTANCE, SurfaceDerivatives, SurfacePoint};
 use crate::instance::Instance;
 use crate::mesh::heap;
 use crate::shape::entity::Entity;
@@ -76,16 +76,29 @@ impl Geometry {
         search.best.is_some()
     }
 
-    /// Position, normals and derivatives at a hit, in world space. `ray` is the ray that found the hit.
+    /// Position and normals at a hit, in world space. `ray` is the ray that found the hit.
+    #[inline]
     #[must_use]
     pub fn surface_point(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         let entity = &self.entities[hit.geometry.0 as usize];
         if hit.instance == NO_INSTANCE {
-            return entity.surface(hit.primitive, ray, hit.t, hit.uv).surface;
+            return entity.point(hit.primitive, ray, hit.t, hit.uv).1;
+        }
+        let instance = &self.instances[hit.instance as usize];
+        let (p, point) = entity.point(hit.primitive, &instance.group_ray(ray), hit.t, hit.uv);
+        instance.world_point(p, &point, ray.time)
+    }
+
+    /// Derivatives at a hit, in world space. `ray` is the ray that found the hit.
+    #[must_use]
+    pub fn surface_derivatives(&self, ray: &Ray, hit: &Hit) -> SurfaceDerivatives {
+        let entity = &self.entities[hit.geometry.0 as usize];
+        if hit.instance == NO_INSTANCE {
+            return entity.surface(hit.primitive, ray, hit.t, hit.uv).derivatives;
         }
         let instance = &self.instances[hit.instance as usize];
         let local = entity.surface(hit.primitive, &instance.group_ray(ray), hit.t, hit.uv);
-        instance.world_surface(&local, ray.time)
+        instance.world_derivatives(&local, ray.time)
     }
 
     /// Texture coordinates at a hit, cheaper than [`surface_point`](Self::surface_point).

@@ -13,7 +13,8 @@ pub struct ObjectId(pub u32);
 /// Value of [`Hit::instance`] for geometry that belongs to no instance.
 pub const NO_INSTANCE: u32 = u32::MAX;
 
-/// Where a ray meets a surface, as small as possible; [`crate::Geometry::surface_point`] tells the rest.
+/// Where a ray meets a surface, as small as possible; [`crate::Geometry::surface_point`] and
+/// [`surface_derivatives`](crate::Geometry::surface_derivatives) tell the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Ray parameter, greater than 0; a distance in metres where the direction has length 1.
@@ -29,7 +30,7 @@ pub struct Hit {
     pub uv: [f32; 2],
 }
 
-/// Differential geometry at a hit, in world space.
+/// A point of a surface, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// Position.
@@ -42,6 +43,13 @@ pub struct SurfacePoint {
     pub ns: Normal3,
     /// Texture coordinates.
     pub uv: Point2,
+    /// Number given to the face by the file (Ptex); 0 if none.
+    pub face_index: i32,
+}
+
+/// How a surface changes around a point, in world space.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurfaceDerivatives {
     /// Change of position with u on the true surface.
     pub dpdu: Vector3,
     /// Change of position with v on the true surface.
@@ -54,8 +62,6 @@ pub struct SurfacePoint {
     pub dndu: Vector3,
     /// Change of the shading normal with v.
     pub dndv: Vector3,
-    /// Number given to the face by the file (Ptex); 0 if none.
-    pub face_index: i32,
 }
 
 /// The point that a light illuminates.

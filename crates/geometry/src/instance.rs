@@ -6,11 +6,11 @@
 #[cfg(test)]
 mod tests;
 
-use etendue_math::{AnimatedTransform, Bounds3, Motion, Ray, Vector3};
+use etendue_math::{AnimatedTransform, Bounds3, Motion, Normal3, Ray, Vector3};
 use glam::{DAffine3, DVec3};
 
 use crate::double::{self, NormalMap};
-use crate::hit::SurfacePoint;
+use crate::hit::{SurfaceDerivatives, SurfacePoint};
 use crate::shape::LocalSurface;
 
 /// A placed group.
@@ -78,29 +78,37 @@ impl Instance {
         Ray { origin: double::to_point(origin), direction: double::to_vector(direction), time: ray.time }
     }
 
-    /// Carries differential geometry to the world.
-    pub(crate) fn world_surface(&self, local: &LocalSurface, time: f32) -> SurfacePoint {
+    /// Carries a point, also given before rounding, to the world.
+    pub(crate) fn world_point(&self, p: DVec3, point: &SurfacePoint, time: f32) -> SurfacePoint {
         let maps = self.maps(time);
         let map = &maps.world_from_group;
         let normals = NormalMap::new(&maps.group_from_world);
-        let s = &local.surface;
-        let vector = |v: Vector3| double::to_vector(map.transform_vector3(double::vector(v)));
-        let (ng, _) = normals.apply(double::normal(s.ng), [DVec3::ZERO; 2]);
-        let (ns, dn) = normals.apply(double::normal(s.ns), [s.dndu, s.dndv].map(double::vector));
-        let p = double::to_point(map.transform_point3(local.p));
+        let normal = |n: Normal3| double::to_normal(normals.apply(double::normal(n), [DVec3::ZERO; 2]).0);
+        let p = double::to_point(map.transform_point3(p));
         SurfacePoint {
             p,
-            p_error: double::rounding_error(p) + world_error(map, local),
-            ng: double::to_normal(ng),
-            ns: double::to_normal(ns),
-            uv: s.uv,
-            dpdu: vector(s.dpdu),
-            dpdv: vector(s.dpdv),
-            shading_dpdu: vector(s.shading_dpdu),
-            shading_dpdv: vector(s.shading_dpdv),
+            p_error: double::rounding_error(p) + world_error(map, point.p_error),
+            ng: normal(point.ng),
+            ns: normal(point.ns),
+            ..*point
+        }
+    }
+
+    /// Carries derivatives to the world.
+    pub(crate) fn world_derivatives(&self, local: &LocalSurface, time: f32) -> SurfaceDerivatives {
+        let maps = self.maps(time);
+        let vector =
+            |v: Vector3| double::to_vector(maps.world_from_group.transform_vector3(double::vector(v)));
+        let d = &local.derivatives;
+        let normals = NormalMap::new(&maps.group_from_world);
+        let (_, dn) = normals.apply(double::normal(local.point.ns), [d.dndu, d.dndv].map(double::vector));
+        SurfaceDerivatives {
+            dpdu: vector(d.dpdu),
+            dpdv: vector(d.dpdv),
+            shading_dpdu: vector(d.shading_dpdu),
+            shading_dpdv: vector(d.shading_dpdv),
             dndu: double::to_vector(dn[0]),
             dndv: double::to_vector(dn[1]),
-            face_index: s.face_index,
         }
     }
 
@@ -114,9 +122,9 @@ impl Instance {
 }
 
 /// The error in the world of a ray that starts at the point and has its origin rounded in the space of the group.
-fn world_error(map: &DAffine3, local: &LocalSurface) -> Vector3 {
+fn world_error(map: &DAffine3, p_error: Vector3) -> Vector3 {
     let m = map.matrix3;
-    let error = double::vector(local.surface.p_error);
+    let error = double::vector(p_error);
     let carried = m.x_axis.abs() * error.x + m.y_axis.abs() * error.y + m.z_axis.abs() * error.z;
     double::to_vector(carried)
 }

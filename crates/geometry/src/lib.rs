@@ -24,7 +24,9 @@ mod test_support;
 
 pub use builder::GeometryBuilder;
 pub use geometry::{Geometry, GeometryCounts};
-pub use hit::{GeometryId, Hit, NO_INSTANCE, ObjectId, Reference, ShapeSample, SurfacePoint};
+pub use hit::{
+    GeometryId, Hit, NO_INSTANCE, ObjectId, Reference, ShapeSample, SurfaceDerivatives, SurfacePoint,
+};
 pub use mesh::{BilinearMesh, MeshError, TriangleMesh};
 pub use shape::Shape;
 pub use subdivision::loop_subdivide;

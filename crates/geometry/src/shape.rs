@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 use etendue_math::{Bounds3, Point3, Vector3};
 use glam::DVec3;
 
-use crate::hit::SurfacePoint;
+use crate::hit::{SurfaceDerivatives, SurfacePoint};
 use crate::mesh::{BilinearMesh, MeshError, TriangleMesh};
 
 /// A surface in object space, in metres.
@@ -98,7 +98,8 @@ pub(crate) type Candidates = [Option<Candidate>; 2];
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LocalSurface {
     pub(crate) p: DVec3,
-    pub(crate) surface: SurfacePoint,
+    pub(crate) point: SurfacePoint,
+    pub(crate) derivatives: SurfaceDerivatives,
 }
 
 /// Azimuth in [0, 2 pi).

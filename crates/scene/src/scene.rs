@@ -1,7 +1,7 @@
 //! The immutable scene: everything that a method of light transport may ask.
 
-use etendue_geometry::{Geometry, Hit, Reference, SurfacePoint};
-use etendue_math::{Bounds3, Ray, SamplerSettings, Vector3, hash64, offset_ray_origin};
+use etendue_geometry::{Geometry, Hit, Reference, SurfaceDerivatives, SurfacePoint};
+use etendue_math::{Bounds3, Point3, Ray, SamplerSettings, Vector3, hash64, offset_ray_origin};
 use etendue_spectrum::{Sampled, Wavelengths};
 
 use crate::bsdf::Bsdf;
@@ -27,8 +27,12 @@ pub struct ShapeAttributes {
 /// A point on a surface as a path finds it.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
-    /// Differential geometry.
+    /// Position and normals.
     pub point: SurfacePoint,
+    /// How the ray met it.
+    pub hit: Hit,
+    /// Where the ray came from.
+    pub ray_origin: Point3,
     /// Unit direction back to where the path came from.
     pub wo: Vector3,
     /// Time in seconds.
@@ -88,8 +92,6 @@ pub struct Scene {
     pub sampler: SamplerSettings,
     /// The method that the document asks for, with its parameters.
     pub integrator: Entity,
-    /// True if anything varies over surfaces, so that textures want to know the size of a pixel.
-    pub has_textures: bool,
     /// True if some shape has an alpha texture.
     pub has_alpha: bool,
     /// True if light passes some shapes: by alpha, or because they are interfaces.
@@ -143,14 +145,7 @@ impl Scene {
             FloatTexture::Constant(alpha) => alpha,
             FloatTexture::Node(_) => {
                 let point = self.geometry.surface_point(ray, hit);
-                let context = TextureContext {
-                    p: point.p,
-                    n: point.ns,
-                    uv: point.uv,
-                    face_index: point.face_index,
-                    ..TextureContext::default()
-                };
-                self.textures.eval_float(alpha, &context)
+                self.textures.eval_float(alpha, &TextureContext::at(&point))
             }
         };
         if alpha >= 1.0 {
@@ -172,6 +167,8 @@ impl Scene {
         let attributes = &self.attributes[hit.geometry.0 as usize];
         Surface {
             point: self.geometry.surface_point(ray, hit),
+            hit: *hit,
+            ray_origin: ray.origin,
             wo: -ray.direction,
             time: ray.time,
             material: attributes.material,
@@ -182,33 +179,26 @@ impl Scene {
     /// How the surface scatters light; `None` where light passes it as if it were not there.
     ///
     /// Materials that disperse reduce `lambda` to its first wavelength.
+    #[inline]
     #[must_use]
     pub fn bsdf(&self, surface: &Surface, lambda: &mut Wavelengths) -> Option<Bsdf> {
-        self.materials.bsdf(surface.material, &self.textures, &self.material_context(surface), lambda)
+        let context = if self.materials.is_uniform(surface.material) {
+            MaterialContext::uniform(&surface.point, surface.wo)
+        } else {
+            self.material_context(surface)
+        };
+        self.materials.bsdf(surface.material, &self.textures, &context, lambda)
     }
 
     fn material_context(&self, surface: &Surface) -> MaterialContext {
         let point = &surface.point;
-        let (dpdx, dpdy) = if self.has_textures {
-            self.camera.dpdx_dpdy(point.p, point.ng, surface.time, self.sampler.samples_per_pixel)
-        } else {
-            (Vector3::default(), Vector3::default())
-        };
-        let [dudx, dudy, dvdx, dvdy] =
-            if self.has_textures { uv_differentials(point, dpdx, dpdy) } else { [0.0; 4] };
-        let texture = TextureContext {
-            p: point.p,
-            dpdx,
-            dpdy,
-            n: point.ns,
-            uv: point.uv,
-            dudx,
-            dudy,
-            dvdx,
-            dvdy,
-            face_index: point.face_index,
-        };
-        MaterialContext::new(texture, point, surface.wo)
+        let ray = Ray { origin: surface.ray_origin, direction: -surface.wo, time: surface.time };
+        let derivatives = self.geometry.surface_derivatives(&ray, &surface.hit);
+        let (dpdx, dpdy) =
+            self.camera.dpdx_dpdy(point.p, point.ng, surface.time, self.sampler.samples_per_pixel);
+        let [dudx, dudy, dvdx, dvdy] = uv_differentials(&derivatives, dpdx, dpdy);
+        let texture = TextureContext { dpdx, dpdy, dudx, dudy, dvdx, dvdy, ..TextureContext::at(point) };
+        MaterialContext::new(texture, point, &derivatives, surface.wo)
     }
 
     /// Radiance in W/(m^2 sr nm) that a surface emits back along the path.
@@ -254,8 +244,8 @@ impl Scene {
 
 /// Changes of u and v per pixel, from those of the position: the least-squares solution of
 /// dp = dpdu du + dpdv dv (Pharr et al. 2023, section 10.1.1). Zero where the surface has no parameters.
-fn uv_differentials(point: &SurfacePoint, dpdx: Vector3, dpdy: Vector3) -> [f32; 4] {
-    let (dpdu, dpdv) = (point.dpdu, point.dpdv);
+fn uv_differentials(derivatives: &SurfaceDerivatives, dpdx: Vector3, dpdy: Vector3) -> [f32; 4] {
+    let (dpdu, dpdv) = (derivatives.dpdu, derivatives.dpdv);
     let (uu, uv, vv) = (dpdu.dot(dpdu), dpdu.dot(dpdv), dpdv.dot(dpdv));
     let inverse = 1.0 / (f64::from(uu) * f64::from(vv) - f64::from(uv) * f64::from(uv)) as f32;
     if !inverse.is_finite() {

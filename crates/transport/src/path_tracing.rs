@@ -11,7 +11,7 @@ use etendue_geometry::Reference;
 use etendue_math::Ray;
 use etendue_scene::bsdf::{Bsdf, BsdfSample, Lobes, TransportMode};
 use etendue_scene::document::Entity;
-use etendue_scene::film::{AovSpace, Features, FilmKind};
+use etendue_scene::film::{AovSpace, Features, FilmKind, TileSamples};
 use etendue_scene::light::LightId;
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 use etendue_scene::scene::Surface;
@@ -158,13 +158,15 @@ impl PathSettings {
 pub struct PathTracer {
     settings: PathSettings,
     expressions: PathExpressions,
+    /// Memory of the last pass's tiles, for the next.
+    tiles: Vec<TileSamples>,
 }
 
 impl PathTracer {
     /// A path tracer that fills the film's layers by these expressions, in their order.
     #[must_use]
     pub const fn new(settings: PathSettings, expressions: PathExpressions) -> Self {
-        Self { settings, expressions }
+        Self { settings, expressions, tiles: Vec::new() }
     }
 }
 
@@ -177,8 +179,9 @@ impl Integrator for PathTracer {
         let camera_pass =
             CameraPass { wavelengths: self.settings.wavelengths, expressions: &self.expressions };
         let settings = self.settings;
-        camera_pass
-            .run(scene, pass, film, control, |tracer, path| Walk::new(&settings, path).follow(tracer, path))
+        camera_pass.run(scene, pass, film, control, &mut self.tiles, |tracer, path| {
+            Walk::new(&settings, path).follow(tracer, path)
+        })
     }
 }
 

@@ -14,7 +14,8 @@ use super::{Candidates, LocalSurface, Shape};
 use crate::bvh::{BuildPrimitive, PrimitiveRef, intersect_triangle, pair_up};
 use crate::double;
 use crate::geometry::GeometryCounts;
-use crate::hit::{Reference, ShapeSample};
+use crate::hit::{Reference, ShapeSample, SurfacePoint};
+use glam::DVec3;
 
 /// A placed shape.
 #[derive(Clone, Debug)]
@@ -99,6 +100,16 @@ impl Entity {
             Self::Patches(patches) => patches.intersect(primitive, ray),
             Self::Quadric(quadric) => quadric.intersect(ray),
         }
+    }
+
+    /// The point of a hit of `ray`, before rounding too.
+    #[inline]
+    pub(crate) fn point(&self, primitive: u32, ray: &Ray, t: f32, uv: [f32; 2]) -> (DVec3, SurfacePoint) {
+        if let Self::Triangles(triangles) = self {
+            return triangles.point(primitive, uv);
+        }
+        let surface = self.surface(primitive, ray, t, uv);
+        (surface.p, surface.point)
     }
 
     /// Differential geometry of a hit of `ray`.
@@ -187,7 +198,7 @@ impl Entity {
             }
             Self::Patches(patches) => (patches.pdf_a(primitive, uv), patches.normal(primitive, uv)),
             Self::Quadric(quadric) => {
-                let n = quadric.surface(ray, t, [0.0; 2]).surface.ng;
+                let n = quadric.surface(ray, t, [0.0; 2]).point.ng;
                 (quadric.pdf_a(n), n)
             }
         }

@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::{Candidate, Candidates, LocalSurface, weingarten};
 use crate::double;
-use crate::hit::{ShapeSample, SurfacePoint};
+use crate::hit::{ShapeSample, SurfaceDerivatives, SurfacePoint};
 use crate::mesh::BilinearMesh;
 
 /// A mesh of patches in the space of its group.
@@ -150,24 +150,21 @@ impl Patches {
         });
         let rounded = double::to_point(p);
         let (dpdu, dpdv) = (double::to_vector(dpdu), double::to_vector(dpdv));
-        let mut surface = SurfacePoint {
+        let point = SurfacePoint {
             p: rounded,
             p_error: double::surface_error(rounded, double::largest_coordinate(&c)),
             ng: double::to_normal(ng),
             ns: double::to_normal(ng),
             uv: self.uv(patch, uv),
-            dpdu,
-            dpdv,
-            shading_dpdu: dpdu,
-            shading_dpdv: dpdv,
-            dndu,
-            dndv,
             face_index: self.mesh.face_indices.get(patch as usize).copied().unwrap_or(0),
         };
+        let derivatives =
+            SurfaceDerivatives { dpdu, dpdv, shading_dpdu: dpdu, shading_dpdv: dpdv, dndu, dndv };
+        let mut surface = LocalSurface { p, point, derivatives };
         if let (Some(normals), Some(interpolated)) = (self.normals(patch), interpolated) {
             shade(&normals, interpolated, [u, v], change, &mut surface);
         }
-        LocalSurface { p, surface }
+        surface
     }
 
     /// How derivatives by texture coordinates follow from those by the position on the patch.
@@ -316,12 +313,13 @@ fn shade(
     interpolated: DVec3,
     [u, v]: [f64; 2],
     change: Option<ParameterChange>,
-    surface: &mut SurfacePoint,
+    surface: &mut LocalSurface,
 ) {
     let length = interpolated.length();
     let Some(n) = interpolated.try_normalize() else { return };
-    surface.ns = double::to_normal(n);
-    let ns = surface.ns.as_vector();
+    surface.point.ns = double::to_normal(n);
+    let ns = surface.point.ns.as_vector();
+    let surface = &mut surface.derivatives;
     let second = ns.cross(surface.dpdu);
     if second.length_squared() > 0.0 {
         surface.shading_dpdu = second.cross(ns);

@@ -11,7 +11,7 @@ use super::disk::Disk;
 use super::sphere::Sphere;
 use super::{Candidates, LocalSurface};
 use crate::double::{self, NormalMap};
-use crate::hit::{ShapeSample, SurfacePoint};
+use crate::hit::{ShapeSample, SurfaceDerivatives, SurfacePoint};
 
 /// A quadric in its own space.
 #[derive(Clone, Copy, Debug)]
@@ -181,21 +181,23 @@ impl Quadric {
         let (dpdu, dpdv) = (vector(local.dpdu), vector(local.dpdv));
         let n = double::to_normal(n * self.sign);
         let rounded = double::to_point(p);
-        let surface = SurfacePoint {
+        let point = SurfacePoint {
             p: rounded,
             p_error: double::surface_error(rounded, self.size),
             ng: n,
             ns: n,
             uv: Point2::new(uv[0], uv[1]),
+            face_index: 0,
+        };
+        let derivatives = SurfaceDerivatives {
             dpdu,
             dpdv,
             shading_dpdu: dpdu,
             shading_dpdv: dpdv,
             dndu: double::to_vector(dndu * self.sign),
             dndv: double::to_vector(dndv * self.sign),
-            face_index: 0,
         };
-        LocalSurface { p, surface }
+        LocalSurface { p, point, derivatives }
     }
 
     /// Area in square metres.

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::plane::intersect_plane;
 use crate::test_support::{any, assert_close, ball, direction, octahedron, point_in_cube, single};
-use crate::{BilinearMesh, Geometry, Hit, Shape, SurfacePoint, TriangleMesh};
+use crate::{BilinearMesh, Geometry, Hit, Shape, SurfaceDerivatives, SurfacePoint, TriangleMesh};
 
 fn hit(geometry: &Geometry, origin: [f32; 3], direction: [f32; 3]) -> Option<(Hit, SurfacePoint)> {
     let ray = Ray::new(
@@ -14,6 +14,18 @@ fn hit(geometry: &Geometry, origin: [f32; 3], direction: [f32; 3]) -> Option<(Hi
     );
     let hit = geometry.intersect(&ray, f32::INFINITY, &any)?;
     Some((hit, geometry.surface_point(&ray, &hit)))
+}
+
+/// The same with derivatives.
+fn hit_with_derivatives(
+    geometry: &Geometry,
+    origin: [f32; 3],
+    direction: [f32; 3],
+) -> Option<(SurfacePoint, SurfaceDerivatives)> {
+    let (hit, point) = hit(geometry, origin, direction)?;
+    let ([ox, oy, oz], [dx, dy, dz]) = (origin, direction);
+    let ray = Ray::new(Point3::new(ox, oy, oz), Vector3::new(dx, dy, dz));
+    Some((point, geometry.surface_derivatives(&ray, &hit)))
 }
 
 fn at(shape: &Shape, origin: [f32; 3], direction: [f32; 3]) -> Option<(Hit, SurfacePoint)> {
@@ -151,15 +163,17 @@ fn derivatives_are_those_of_the_surface() {
         for transform in [Transform::IDENTITY, stretch] {
             for reverse in [false, true] {
                 let (geometry, _) = single(shape.clone(), transform, reverse);
-                let probe = |x: f32, y: f32| hit(&geometry, [x, y, 4.0], [0.0, 0.0, -1.0]).expect("a hit").1;
-                let here = probe(0.3, 0.25);
+                let probe = |x: f32, y: f32| {
+                    hit_with_derivatives(&geometry, [x, y, 4.0], [0.0, 0.0, -1.0]).expect("a hit")
+                };
+                let (here, d) = probe(0.3, 0.25);
                 for step in [[2e-3, 0.0], [0.0, 2e-3]] {
-                    let ahead = probe(0.3 + step[0], 0.25 + step[1]);
-                    let behind = probe(0.3 - step[0], 0.25 - step[1]);
+                    let ahead = probe(0.3 + step[0], 0.25 + step[1]).0;
+                    let behind = probe(0.3 - step[0], 0.25 - step[1]).0;
                     let (du, dv) = (ahead.uv.x - behind.uv.x, ahead.uv.y - behind.uv.y);
-                    let dp = here.dpdu * du + here.dpdv * dv;
+                    let dp = d.dpdu * du + d.dpdv * dv;
                     assert_close(dp / 4e-3, (ahead.p - behind.p) / 4e-3, 3e-3);
-                    let dn = here.dndu * du + here.dndv * dv;
+                    let dn = d.dndu * du + d.dndv * dv;
                     let expected = (ahead.ns - behind.ns).as_vector();
                     assert!(
                         ((dn - expected) / 4e-3).length() < 3e-3,
@@ -167,8 +181,8 @@ fn derivatives_are_those_of_the_surface() {
                     );
                 }
                 assert!(here.ns.dot(here.ng) > 0.0);
-                assert!(here.shading_dpdu.abs_dot_normal(here.ns) < 1e-5 * here.shading_dpdu.length());
-                assert!(here.shading_dpdv.abs_dot_normal(here.ns) < 1e-5 * here.shading_dpdv.length());
+                assert!(d.shading_dpdu.abs_dot_normal(here.ns) < 1e-5 * d.shading_dpdu.length());
+                assert!(d.shading_dpdv.abs_dot_normal(here.ns) < 1e-5 * d.shading_dpdv.length());
             }
         }
     }
@@ -215,8 +229,9 @@ fn default_texture_coordinates_are_those_of_pbrt() {
     let (_, s) = at(&Shape::Bilinear(square()), [0.5, 0.75, 1.0], [0.0, 0.0, -1.0]).expect("a hit");
     assert!((s.uv.x - 0.25).abs() < 1e-6 && (s.uv.y - 0.25).abs() < 1e-6, "{:?}", s.uv);
     let degenerate = TriangleMesh { uvs: vec![Point2::new(0.5, 0.5); 3], ..triangle() };
-    let (_, s) = at(&Shape::Triangles(degenerate), [0.25, 0.25, 1.0], [0.0, 0.0, -1.0]).expect("a hit");
-    assert!(s.dpdu.cross(s.dpdv).length() > 0.5, "tangents exist all the same");
+    let (geometry, _) = single(Shape::Triangles(degenerate), Transform::IDENTITY, false);
+    let (_, d) = hit_with_derivatives(&geometry, [0.25, 0.25, 1.0], [0.0, 0.0, -1.0]).expect("a hit");
+    assert!(d.dpdu.cross(d.dpdv).length() > 0.5, "tangents exist all the same");
 }
 
 /// Tangents given with the mesh direct the shading frame.
@@ -224,9 +239,10 @@ fn default_texture_coordinates_are_those_of_pbrt() {
 fn mesh_tangents_direct_the_shading_frame() {
     let tangent = Vector3::new(0.6, 0.8, 0.3);
     let mesh = TriangleMesh { tangents: vec![tangent; 3], ..triangle() };
-    let (_, s) = at(&Shape::Triangles(mesh), [0.25, 0.25, 1.0], [0.0, 0.0, -1.0]).expect("a hit");
-    assert_close(s.shading_dpdu, Vector3::new(0.6, 0.8, 0.0), 1e-6);
-    assert_close(s.shading_dpdv, Vector3::new(-0.8, 0.6, 0.0), 1e-6);
+    let (geometry, _) = single(Shape::Triangles(mesh), Transform::IDENTITY, false);
+    let (_, d) = hit_with_derivatives(&geometry, [0.25, 0.25, 1.0], [0.0, 0.0, -1.0]).expect("a hit");
+    assert_close(d.shading_dpdu, Vector3::new(0.6, 0.8, 0.0), 1e-6);
+    assert_close(d.shading_dpdv, Vector3::new(-0.8, 0.6, 0.0), 1e-6);
 }
 
 /// A bilinear patch is hit where its equation says, and twice if the ray passes it twice.

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::LocalSurface;
 use crate::double;
-use crate::hit::{ShapeSample, SurfacePoint};
+use crate::hit::{ShapeSample, SurfaceDerivatives, SurfacePoint};
 use crate::mesh::TriangleMesh;
 
 /// A triangle mesh in the space of its group.
@@ -19,6 +19,8 @@ pub(crate) struct Triangles {
     mesh: TriangleMesh,
     /// True if normals without vertex normals point against the winding.
     flips: bool,
+    /// Largest magnitude of a coordinate.
+    size: f64,
 }
 
 /// Solid angles in which sampling by direction is accurate, in steradians: all but nearly half the sphere.
@@ -47,21 +49,31 @@ impl Triangles {
                 *n = -*n;
             }
         }
-        Self { mesh, flips: reverse_orientation ^ group_from_shape.swaps_handedness() }
+        let size = mesh
+            .positions
+            .iter()
+            .map(|p| p.abs().max_element())
+            .filter(|x| x.is_finite())
+            .fold(0.0, f32::max);
+        let flips = reverse_orientation ^ group_from_shape.swaps_handedness();
+        Self { mesh, flips, size: size.into() }
     }
 
     pub(crate) const fn mesh(&self) -> &TriangleMesh {
         &self.mesh
     }
 
+    #[inline]
     pub(crate) fn positions(&self, triangle: u32) -> [Point3; 3] {
         self.mesh.indices[triangle as usize].map(|vertex| self.mesh.positions[vertex as usize])
     }
 
+    #[inline]
     fn corners(&self, triangle: u32) -> [DVec3; 3] {
         self.positions(triangle).map(double::point)
     }
 
+    #[inline]
     fn uvs(&self, triangle: u32) -> [Point2; 3] {
         if self.mesh.uvs.is_empty() {
             return [Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(1.0, 1.0)];
@@ -69,6 +81,7 @@ impl Triangles {
         self.mesh.indices[triangle as usize].map(|vertex| self.mesh.uvs[vertex as usize])
     }
 
+    #[inline]
     fn normals(&self, triangle: u32) -> Option<[Normal3; 3]> {
         (!self.mesh.normals.is_empty())
             .then(|| self.mesh.indices[triangle as usize].map(|vertex| self.mesh.normals[vertex as usize]))
@@ -82,6 +95,7 @@ impl Triangles {
     }
 
     /// Texture coordinates for the barycentric weights of a hit.
+    #[inline]
     pub(crate) fn uv(&self, triangle: u32, b: [f32; 2]) -> Point2 {
         let uv = self.uvs(triangle);
         let b0 = 1.0 - b[0] - b[1];
@@ -92,12 +106,16 @@ impl Triangles {
     }
 
     /// Unit normal of the winding, or against it where the mesh flips; the zero vector for no area.
+    #[inline]
     fn plane_normal(&self, corners: &[DVec3; 3]) -> Normal3 {
-        let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-        double::to_normal(if self.flips { -n } else { n })
+        let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        let length = n.length();
+        let scale = if length > 0.0 { 1.0 / length } else { 0.0 };
+        double::to_normal(n * if self.flips { -scale } else { scale })
     }
 
     /// The geometric normal and the interpolated vertex normal, the latter not normalised.
+    #[inline]
     fn geometric_normal(
         &self,
         triangle: u32,
@@ -106,65 +124,68 @@ impl Triangles {
     ) -> (Normal3, Option<Normal3>) {
         let n = self.plane_normal(corners);
         let Some(normals) = self.normals(triangle) else { return (n, None) };
-        let interpolated = normals[0] * b[0] + normals[1] * b[1] + normals[2] * b[2];
+        let interpolated = interpolate_normals(&normals, b);
         (n.facing(interpolated.as_vector()), Some(interpolated))
     }
 
-    /// Differential geometry at barycentric weights.
-    pub(crate) fn surface(&self, triangle: u32, b: [f32; 2]) -> LocalSurface {
+    /// The point at barycentric weights, before rounding too.
+    #[inline]
+    pub(crate) fn point(&self, triangle: u32, b: [f32; 2]) -> (DVec3, SurfacePoint) {
         let corners = self.corners(triangle);
         let weights = [1.0 - b[0] - b[1], b[0], b[1]];
         let p = interpolate(&corners, b);
         let (ng, interpolated) = self.geometric_normal(triangle, &corners, weights);
-        let uv_corners = self.uvs(triangle);
-        let (dpdu, dpdv) = position_derivatives(&corners, &uv_corners);
         let rounded = double::to_point(p);
-        let mut surface = SurfacePoint {
+        let point = SurfacePoint {
             p: rounded,
-            p_error: double::surface_error(rounded, double::largest_coordinate(&corners)),
+            p_error: double::surface_error(rounded, self.size),
             ng,
-            ns: ng,
+            ns: interpolated.and_then(Normal3::try_normalized).unwrap_or(ng),
             uv: self.uv(triangle, b),
+            face_index: self.mesh.face_indices.get(triangle as usize).copied().unwrap_or(0),
+        };
+        (p, point)
+    }
+
+    /// Differential geometry at barycentric weights.
+    pub(crate) fn surface(&self, triangle: u32, b: [f32; 2]) -> LocalSurface {
+        let (p, point) = self.point(triangle, b);
+        let (dpdu, dpdv) = position_derivatives(&self.corners(triangle), &self.uvs(triangle));
+        let mut derivatives = SurfaceDerivatives {
             dpdu,
             dpdv,
             shading_dpdu: dpdu,
             shading_dpdv: dpdv,
-            dndu: Vector3::default(),
-            dndv: Vector3::default(),
-            face_index: self.mesh.face_indices.get(triangle as usize).copied().unwrap_or(0),
+            ..SurfaceDerivatives::default()
         };
-        self.shade(triangle, weights, interpolated, &mut surface);
-        LocalSurface { p, surface }
+        self.shade(triangle, [1.0 - b[0] - b[1], b[0], b[1]], point.ns.as_vector(), &mut derivatives);
+        LocalSurface { p, point, derivatives }
     }
 
-    /// Fills in shading normal, shading tangents and their derivatives.
-    fn shade(&self, triangle: u32, b: [f32; 3], interpolated: Option<Normal3>, surface: &mut SurfacePoint) {
-        if interpolated.is_none() && self.mesh.tangents.is_empty() {
+    /// Fills in shading tangents and the derivatives of the shading normal `ns`.
+    fn shade(&self, triangle: u32, b: [f32; 3], ns: Vector3, derivatives: &mut SurfaceDerivatives) {
+        let normals = self.normals(triangle);
+        if normals.is_none() && self.mesh.tangents.is_empty() {
             return;
         }
-        if let Some(ns) = interpolated.and_then(Normal3::try_normalized) {
-            surface.ns = ns;
-        }
-        let ns = surface.ns.as_vector();
-        let tangent = self.tangent(triangle, b).unwrap_or(surface.dpdu);
+        let tangent = self.tangent(triangle, b).unwrap_or(derivatives.dpdu);
         let second = ns.cross(tangent);
         if second.length_squared() > 0.0 && second.is_finite() {
-            surface.shading_dpdu = second.cross(ns);
-            surface.shading_dpdv = second;
+            derivatives.shading_dpdu = second.cross(ns);
+            derivatives.shading_dpdv = second;
         } else {
             let frame = Frame::from_z(ns);
-            surface.shading_dpdu = frame.x;
-            surface.shading_dpdv = frame.y;
+            derivatives.shading_dpdu = frame.x;
+            derivatives.shading_dpdv = frame.y;
         }
-        if let (Some(normals), Some(interpolated)) = (self.normals(triangle), interpolated) {
-            let (dndu, dndv) = normal_derivatives(&normals, &self.uvs(triangle));
-            // Of the unit normal, not of the interpolated vector.
-            let length = interpolated.as_vector().length();
-            if length > 0.0 {
-                let unit = |dn: Vector3| (dn - ns * ns.dot(dn)) / length;
-                surface.dndu = unit(dndu);
-                surface.dndv = unit(dndv);
-            }
+        let Some(normals) = normals else { return };
+        let (dndu, dndv) = normal_derivatives(&normals, &self.uvs(triangle));
+        // Of the unit normal, not of the interpolated vector.
+        let length = interpolate_normals(&normals, b).as_vector().length();
+        if length > 0.0 {
+            let unit = |dn: Vector3| (dn - ns * ns.dot(dn)) / length;
+            derivatives.dndu = unit(dndu);
+            derivatives.dndv = unit(dndv);
         }
     }
 
@@ -208,13 +229,7 @@ impl Triangles {
         let corners = self.corners(triangle);
         let p = double::to_point(interpolate(&corners, b));
         let n = self.geometric_normal(triangle, &corners, [1.0 - b[0] - b[1], b[0], b[1]]).0;
-        ShapeSample {
-            p,
-            p_error: double::surface_error(p, double::largest_coordinate(&corners)),
-            n,
-            uv: self.uv(triangle, b),
-            pdf_a,
-        }
+        ShapeSample { p, p_error: double::surface_error(p, self.size), n, uv: self.uv(triangle, b), pdf_a }
     }
 
     /// The triangle on the sphere of directions around `p`, where sampling by direction applies.
@@ -245,6 +260,10 @@ impl Triangles {
 /// The point with barycentric weights b1 and b2.
 fn interpolate(corners: &[DVec3; 3], b: [f32; 2]) -> DVec3 {
     corners[0] + (corners[1] - corners[0]) * f64::from(b[0]) + (corners[2] - corners[0]) * f64::from(b[1])
+}
+
+fn interpolate_normals(normals: &[Normal3; 3], b: [f32; 3]) -> Normal3 {
+    normals[0] * b[0] + normals[1] * b[1] + normals[2] * b[2]
 }
 
 fn area(corners: &[DVec3; 3]) -> f64 {

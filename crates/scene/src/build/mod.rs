@@ -85,7 +85,6 @@ impl Scene {
         }
         let has_alpha = attributes.iter().any(|a| a.alpha.is_some());
         let has_passable = has_alpha || attributes.iter().any(|a| materials.is_interface(a.material));
-        let has_textures = !document.textures.is_empty();
         let scene = Self {
             geometry,
             attributes,
@@ -100,7 +99,6 @@ impl Scene {
             filter,
             sampler,
             integrator: document.integrator.clone().unwrap_or_else(|| Entity::new("volpath")),
-            has_textures,
             has_alpha,
             has_passable,
         };

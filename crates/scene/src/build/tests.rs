@@ -185,7 +185,7 @@ fn an_empty_document_is_a_scene() {
     assert_eq!(scene.integrator.type_name, "volpath");
     assert_eq!(scene.materials.len(), 2);
     assert!(scene.attributes.is_empty() && scene.bounds().is_empty());
-    assert!(!scene.has_alpha && !scene.has_passable && !scene.has_textures);
+    assert!(!scene.has_alpha && !scene.has_passable);
 }
 
 /// All that is wrong is said at once, not only the first of it.

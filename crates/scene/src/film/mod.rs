@@ -10,15 +10,16 @@ mod settings;
 mod sums;
 #[cfg(test)]
 mod tests;
+mod tile;
 
 use std::ops::Range;
 
 use etendue_image::Image;
-use etendue_spectrum::{Sampled, Wavelengths};
 
 pub use exact_sum::ExactSum;
 pub use settings::{AovSpace, FilmKind, FilmSettings, PixelBounds};
 pub use sums::{FilmSums, MergeError, SampleFaults, SumsError};
+pub use tile::{FilmTile, PixelSample, TileSamples};
 
 /// Position of the colour among the values of a pixel and of the sums of w², w² Y and w² Y² that tell the variance
 /// (w the weight, Y the luminance of a sample); extra channels follow.
@@ -65,21 +66,6 @@ impl Features {
     }
 }
 
-/// One finished camera path.
-#[derive(Clone, Copy, Debug)]
-pub struct PixelSample<'a> {
-    /// Radiance along the camera ray in W/(m^2 sr nm), times the camera's weight.
-    pub radiance: Sampled,
-    /// Its wavelengths.
-    pub lambda: &'a Wavelengths,
-    /// Weight of the pixel filter.
-    pub filter_weight: f32,
-    /// Features of the first surface, if the film wants them.
-    pub features: Option<Features>,
-    /// Radiance of each named layer, in the order of [`FilmLayout::layers`].
-    pub layers: &'a [Sampled],
-}
-
 /// The channels of a film beyond colour.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FilmLayout {
@@ -99,6 +85,11 @@ impl FilmLayout {
         Self { layers, n_features, n_buckets }
     }
 
+    /// Length of the record of a sample.
+    fn record_len(&self) -> usize {
+        tile::EXTRA + self.n_features + self.n_buckets + N_COLOR * self.layers.len()
+    }
+
     /// Names of the values of a pixel, in their order.
     fn channel_names(&self, settings: &FilmSettings) -> Vec<String> {
         let mut names: Vec<String> = CANONICAL_NAMES.map(str::to_owned).to_vec();
@@ -108,74 +99,6 @@ impl FilmLayout {
             names.extend(["R", "G", "B"].map(|component| format!("{layer}.{component}")));
         }
         names
-    }
-}
-
-/// A part of the film that one thread fills.
-#[derive(Debug)]
-pub struct FilmTile<'f> {
-    settings: &'f FilmSettings,
-    layout: &'f FilmLayout,
-    sums: FilmSums,
-}
-
-impl FilmTile<'_> {
-    /// The pixels of this tile.
-    #[must_use]
-    pub const fn bounds(&self) -> PixelBounds {
-        self.sums.bounds
-    }
-
-    /// True if samples should come with [`Features`].
-    #[must_use]
-    pub const fn wants_features(&self) -> bool {
-        self.layout.n_features > 0
-    }
-
-    /// Adds one sample. NaN, infinite or negative radiance is counted and taken as black; debug builds panic.
-    pub fn add(&mut self, pixel: [u32; 2], sample: &PixelSample<'_>) {
-        let mut radiance = sample.radiance;
-        if !radiance.is_finite() || radiance.min_value() < 0.0 {
-            debug_assert!(false, "radiance {radiance:?} at pixel {pixel:?}");
-            self.sums.faults.invalid += 1;
-            self.sums.faults.first_pixel.get_or_insert(pixel);
-            radiance = Sampled::ZERO;
-        }
-        let index = self.sums.bounds.index(pixel);
-        let weight = f64::from(sample.filter_weight);
-        self.sums.weights[index] += ExactSum::of(weight);
-
-        let rgb = self.settings.output_rgb(radiance, sample.lambda);
-        let luminance = self.sums.luminance(rgb);
-        let stride = self.sums.stride();
-        let values = &mut self.sums.values[index * stride..(index + 1) * stride];
-        for (sum, value) in values.iter_mut().zip(rgb) {
-            let term = f64::from(value) * weight;
-            self.sums.faults.saturated += u64::from(ExactSum::saturates(term));
-            *sum += ExactSum::of(term);
-        }
-        let mut moment = weight * weight;
-        for sum in &mut values[MOMENTS] {
-            *sum += ExactSum::of(moment);
-            moment *= luminance;
-        }
-
-        let extra = &mut values[FIRST_EXTRA..];
-        let (features, extra) = extra.split_at_mut(self.layout.n_features);
-        if let Some(found) = sample.features {
-            for (sum, value) in features.iter_mut().zip(found.to_array()) {
-                *sum += ExactSum::of(f64::from(value) * weight);
-            }
-        }
-        let (buckets, layers) = extra.split_at_mut(self.layout.n_buckets);
-        if !buckets.is_empty() {
-            self.settings.add_to_buckets(radiance, sample.lambda, weight, buckets);
-        }
-        for (sums, layer) in layers.chunks_exact_mut(N_COLOR).zip(sample.layers) {
-            for (sum, value) in sums.iter_mut().zip(self.settings.output_rgb(*layer, sample.lambda)) {
-                *sum += ExactSum::of(f64::from(value) * weight);
-            }
-        }
     }
 }
 
@@ -245,21 +168,15 @@ impl Film {
         self.settings.crop.tiles(size)
     }
 
-    /// An empty tile for one thread.
+    /// An empty tile for one thread, in the memory of an old one.
     #[must_use]
-    pub fn start_tile(&self, bounds: PixelBounds) -> FilmTile<'_> {
-        FilmTile { settings: &self.settings, layout: &self.layout, sums: self.sums.like(bounds) }
+    pub fn start_tile(&self, bounds: PixelBounds, memory: TileSamples) -> FilmTile<'_> {
+        FilmTile::new(&self.settings, &self.layout, bounds, memory)
     }
 
-    /// Takes the sums out of a tile, so that the film can change; [`add_sums`](Self::add_sums) brings them in.
-    #[must_use]
-    pub fn finish_tile(tile: FilmTile<'_>) -> FilmSums {
-        tile.sums
-    }
-
-    /// Adds what a tile gathered.
-    pub fn add_sums(&mut self, tile: &FilmSums) {
-        self.sums.add_tile(tile);
+    /// Adds what tiles gathered, in parallel. The tiles are disjoint and in the order of [`tiles`](Self::tiles).
+    pub fn add_tiles(&mut self, tiles: &[TileSamples]) {
+        self.sums.add_tiles(tiles, &self.layout);
     }
 
     /// Notes that a pass is complete.

@@ -5,10 +5,8 @@ use etendue_spectrum::{
     ColorSpace, ColorSpaceName, LAMBDA_MIN_NM, N_DENSE, N_LAMBDA, Sampled, Sensor, Wavelengths,
 };
 
-use super::ExactSum;
-
 /// A rectangle of pixels; the upper ends are exclusive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PixelBounds {
     /// Left and top pixel.
     pub min: [u32; 2],
@@ -159,13 +157,7 @@ impl FilmSettings {
     /// Adds a sample's radiance to the bands of its wavelengths: the expectation of a band's sum is the mean of the
     /// spectral radiance over the band. Paths that carry red, green and blue tell nothing of the spectrum: they leave
     /// these bands black.
-    pub(super) fn add_to_buckets(
-        &self,
-        radiance: Sampled,
-        lambda: &Wavelengths,
-        weight: f64,
-        sums: &mut [ExactSum],
-    ) {
+    pub(super) fn add_to_buckets(&self, radiance: Sampled, lambda: &Wavelengths, buckets: &mut [f32]) {
         let FilmKind::Spectral { n_buckets, min_nm, max_nm } = self.kind else {
             return;
         };
@@ -180,7 +172,7 @@ impl FilmSettings {
                 continue;
             }
             let estimate = radiance[i] / (pdf[i] * N_LAMBDA as f32 * width);
-            sums[position as usize] += ExactSum::of(f64::from(estimate) * weight);
+            buckets[position as usize] += estimate;
         }
     }
 }

@@ -4,8 +4,11 @@ use std::ops::Range;
 
 use etendue_image::{Channel, Image};
 
+use rayon::prelude::*;
+
 use super::settings::PixelBounds;
-use super::{CANONICAL_NAMES, ExactSum, MOMENTS, N_COLOR};
+use super::tile::{COLOR, EXTRA, TileSamples, WEIGHT};
+use super::{CANONICAL_NAMES, ExactSum, FilmLayout, MOMENTS, N_COLOR};
 
 /// What went wrong while samples were added.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -95,20 +98,15 @@ impl FilmSums {
         }
     }
 
-    /// Empty sums of other pixels with the same channels.
-    pub(super) fn like(&self, bounds: PixelBounds) -> Self {
-        Self::new(bounds, self.names.clone(), self.luminance)
-    }
-
     #[inline]
     pub(super) const fn stride(&self) -> usize {
         self.names.len()
     }
 
     /// Luminance of a colour of the output.
-    #[inline]
+    #[cfg(test)]
     pub(super) fn luminance(&self, rgb: [f32; N_COLOR]) -> f64 {
-        (0..N_COLOR).map(|c| f64::from(self.luminance[c]) * f64::from(rgb[c])).sum()
+        luminance(self.luminance, rgb)
     }
 
     /// The pixels.
@@ -151,18 +149,33 @@ impl FilmSums {
         self.passes = joined;
     }
 
-    /// Adds the sums of some of the pixels.
-    pub(super) fn add_tile(&mut self, tile: &Self) {
-        self.faults.merge(tile.faults);
-        let stride = self.stride();
-        for (source, pixel) in tile.bounds.pixels().enumerate() {
-            let target = self.bounds.index(pixel);
-            self.weights[target] += tile.weights[source];
-            let from = &tile.values[source * stride..(source + 1) * stride];
-            let to = &mut self.values[target * stride..(target + 1) * stride];
-            for (sum, term) in to.iter_mut().zip(from) {
-                *sum += *term;
-            }
+    /// Adds the samples of disjoint tiles, which come in rows from the top; one thread takes a row of tiles.
+    pub(super) fn add_tiles(&mut self, tiles: &[TileSamples], layout: &FilmLayout) {
+        let (width, stride, luminance) = (self.bounds.width() as usize, self.stride(), self.luminance);
+        let (mut weights, mut values) = (self.weights.as_mut_slice(), self.values.as_mut_slice());
+        let mut rows = Vec::new();
+        let mut y = self.bounds.min[1];
+        for tiles in tiles.chunk_by(|a, b| a.bounds.min[1] == b.bounds.min[1]) {
+            let skipped = (tiles[0].bounds.min[1] - y) as usize * width;
+            let n = tiles[0].bounds.height() as usize * width;
+            let row_weights;
+            let row_values;
+            (row_weights, weights) = std::mem::take(&mut weights)[skipped..].split_at_mut(n);
+            (row_values, values) = std::mem::take(&mut values)[skipped * stride..].split_at_mut(n * stride);
+            y = tiles[0].bounds.max[1];
+            rows.push(TileRow {
+                left: self.bounds.min[0],
+                width,
+                stride,
+                weights: row_weights,
+                values: row_values,
+                tiles,
+            });
+        }
+        let saturated: u64 = rows.into_par_iter().map(|mut row| row.add(layout, luminance)).sum();
+        self.faults.saturated += saturated;
+        for tile in tiles {
+            self.faults.merge(tile.faults);
         }
     }
 
@@ -344,6 +357,63 @@ impl FilmSums {
             if scale > 0.0 { f64::from(*v) / (scale * scale) } else { 0.0 }
         });
         (terms.sum::<f64>() / n as f64).sqrt()
+    }
+}
+
+/// Luminance of a colour, where `weights` are those of its unit components.
+#[inline]
+fn luminance(weights: [f32; N_COLOR], rgb: [f32; N_COLOR]) -> f64 {
+    (0..N_COLOR).map(|c| f64::from(weights[c]) * f64::from(rgb[c])).sum()
+}
+
+/// The sums of some rows of pixels, and the tiles that lie in them.
+struct TileRow<'s> {
+    /// First column of the sums, and their number of columns.
+    left: u32,
+    width: usize,
+    stride: usize,
+    weights: &'s mut [ExactSum],
+    values: &'s mut [ExactSum],
+    tiles: &'s [TileSamples],
+}
+
+impl TileRow<'_> {
+    /// Adds the samples; returns how many terms were too large.
+    fn add(&mut self, layout: &FilmLayout, luminance: [f32; N_COLOR]) -> u64 {
+        let mut saturated = 0;
+        for tile in self.tiles {
+            let (tile_width, x) = (tile.bounds.width() as usize, (tile.bounds.min[0] - self.left) as usize);
+            for (record, place) in tile.values.chunks_exact(layout.record_len()).zip(&tile.pixels) {
+                let place = *place as usize;
+                let pixel = place / tile_width * self.width + x + place % tile_width;
+                saturated += self.add_record(pixel, record, luminance);
+            }
+        }
+        saturated
+    }
+
+    #[inline]
+    fn add_record(&mut self, pixel: usize, record: &[f32], luminance_weights: [f32; N_COLOR]) -> u64 {
+        let weight = f64::from(record[WEIGHT]);
+        self.weights[pixel] += ExactSum::of(weight);
+        let values = &mut self.values[pixel * self.stride..(pixel + 1) * self.stride];
+        let rgb = [record[COLOR], record[COLOR + 1], record[COLOR + 2]];
+        let mut saturated = 0;
+        for (sum, value) in values.iter_mut().zip(rgb) {
+            let term = f64::from(value) * weight;
+            saturated += u64::from(ExactSum::saturates(term));
+            *sum += ExactSum::of(term);
+        }
+        let luminance = luminance(luminance_weights, rgb);
+        let mut moment = weight * weight;
+        for sum in &mut values[MOMENTS] {
+            *sum += ExactSum::of(moment);
+            moment *= luminance;
+        }
+        for (sum, value) in values[MOMENTS.end..].iter_mut().zip(&record[EXTRA..]) {
+            *sum += ExactSum::of(f64::from(*value) * weight);
+        }
+        saturated
     }
 }
 

@@ -3,7 +3,7 @@
 use etendue_math::Rng;
 use etendue_math::statistics::{Moments, mean_test};
 use etendue_spectrum::cie::CIE_Y_INTEGRAL;
-use etendue_spectrum::{ColorSpaceName, Sensor, SensorSettings};
+use etendue_spectrum::{ColorSpaceName, Sampled, Sensor, SensorSettings, Wavelengths};
 
 use super::*;
 
@@ -39,10 +39,10 @@ fn sample(radiance: Sampled, lambda: &Wavelengths) -> PixelSample<'_> {
 /// Adds samples through a tile of the whole film.
 fn fill(film: &mut Film, add: impl FnOnce(&mut FilmTile<'_>)) {
     let bounds = film.settings().crop;
-    let mut tile = film.start_tile(bounds);
+    let mut tile = film.start_tile(bounds, TileSamples::default());
     add(&mut tile);
-    let sums = Film::finish_tile(tile);
-    film.add_sums(&sums);
+    let samples = tile.finish();
+    film.add_tiles(&[samples]);
 }
 
 fn values(film: &Film, name: &str) -> Vec<f64> {
@@ -236,7 +236,11 @@ fn features_are_means() {
     for (name, expected) in Features::CHANNELS.into_iter().zip(expected) {
         check_near(values(&film, name)[0], f64::from(expected), 1e-6);
     }
-    assert!(!self::film(1, 1).start_tile(PixelBounds { min: [0, 0], max: [1, 1] }).wants_features());
+    assert!(
+        !self::film(1, 1)
+            .start_tile(PixelBounds { min: [0, 0], max: [1, 1] }, TileSamples::default())
+            .wants_features()
+    );
 }
 
 /// Each band of a spectral film holds the mean radiance over the band: under flat light all bands agree, under a slope
@@ -370,7 +374,7 @@ fn tiles_and_order_do_not_matter() {
             tiles.reverse();
         }
         for bounds in tiles {
-            let mut tile = film.start_tile(bounds);
+            let mut tile = film.start_tile(bounds, TileSamples::default());
             for pixel in bounds.pixels() {
                 for i in 0..20_u32 {
                     let i = if reverse { 19 - i } else { i };
@@ -379,8 +383,8 @@ fn tiles_and_order_do_not_matter() {
                     tile.add(pixel, &sample(radiance, &lambda));
                 }
             }
-            let sums = Film::finish_tile(tile);
-            film.add_sums(&sums);
+            let samples = tile.finish();
+            film.add_tiles(&[samples]);
         }
         film
     };
@@ -518,12 +522,12 @@ fn bands_leave_spectral_channels_black() {
     let kind = FilmKind::Spectral { n_buckets: 4, min_nm: 360.0, max_nm: 830.0 };
     let film = Film::new(with_sensor(kind, SensorSettings::default()), Vec::new());
     let sums = |lambda: &Wavelengths| {
-        let mut tile = film.start_tile(film.settings().crop);
+        let mut tile = film.start_tile(film.settings().crop, TileSamples::default());
         let radiance = Sampled::splat(0.1);
         let sample = PixelSample { radiance, lambda, filter_weight: 1.0, features: None, layers: &[] };
         tile.add([1, 0], &sample);
         let mut film = film.clone();
-        film.add_sums(&Film::finish_tile(tile));
+        film.add_tiles(&[tile.finish()]);
         let image = film.develop();
         let value = |prefix: &str| -> f32 {
             image.channels.iter().filter(|c| c.name.starts_with(prefix)).map(|c| c.values[1]).sum()

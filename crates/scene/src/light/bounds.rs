@@ -10,7 +10,7 @@
 use std::f32::consts::PI;
 
 use etendue_geometry::Reference;
-use etendue_math::{Bounds3, Point3, Vector3, safe_acos};
+use etendue_math::{Bounds3, Lanes4, Point3, Vector3, safe_acos};
 
 /// Slack of cosines, so that rounding never hides a light.
 const COSINE_MARGIN: f32 = 1e-3;
@@ -83,58 +83,111 @@ impl LightBounds {
             two_sided: self.two_sided || other.two_sided,
         }
     }
+}
 
-    /// How much this may contribute at `reference`: an estimate, 0 only if it contributes nothing.
-    #[must_use]
-    pub fn importance(&self, reference: &Reference) -> f32 {
-        if self.intensity <= 0.0 {
-            return 0.0;
+/// Number of children of a node of the tree.
+pub(super) const N_CHILDREN: usize = 4;
+
+/// Four [`LightBounds`] side by side, as the importance needs them. Places not set are of no importance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct BoundsOfFour {
+    /// Middle of the box.
+    center: [Lanes4; 3],
+    /// Square of half the diagonal of the box.
+    radius_squared: Lanes4,
+    /// Axis of the cone of normals.
+    w: [Lanes4; 3],
+    cos_o: Lanes4,
+    sin_o: Lanes4,
+    cos_e: Lanes4,
+    intensity: Lanes4,
+    /// 1 where light leaves on both sides, else 0.
+    two_sided: Lanes4,
+}
+
+impl BoundsOfFour {
+    /// Nothing is there.
+    pub(super) const EMPTY: Self = Self {
+        center: [Lanes4::splat(0.0); 3],
+        radius_squared: Lanes4::splat(0.0),
+        w: [Lanes4::splat(0.0); 3],
+        cos_o: Lanes4::splat(1.0),
+        sin_o: Lanes4::splat(0.0),
+        cos_e: Lanes4::splat(1.0),
+        intensity: Lanes4::splat(0.0),
+        two_sided: Lanes4::splat(0.0),
+    };
+
+    /// Sets one of the four.
+    pub(super) fn set(&mut self, i: usize, bounds: &LightBounds) {
+        let center = bounds.centroid();
+        for axis in 0..3 {
+            self.center[axis].0[i] = center[axis];
+            self.w[axis].0[i] = bounds.w[axis];
         }
-        let from_light = reference.p - self.centroid();
-        let radius_squared = self.bounds.diagonal().length_squared() / 4.0;
-        let true_distance_squared = from_light.length_squared();
-        let distance_squared = true_distance_squared.max(radius_squared).max(1e-20);
-        let Some(wi) = from_light.try_normalized() else {
-            return (self.intensity / distance_squared).clamp(1e-30, 1e30);
-        };
-        // The angle theta_b that the box subtends.
-        let (sin_b, cos_b) = if true_distance_squared <= radius_squared {
-            (0.0, -1.0)
-        } else {
-            let sin_squared = radius_squared / true_distance_squared;
-            (sin_squared.sqrt(), (1.0 - sin_squared).max(0.0).sqrt())
-        };
+        self.radius_squared.0[i] = bounds.bounds.diagonal().length_squared() / 4.0;
+        self.cos_o.0[i] = bounds.cos_theta_o;
+        self.sin_o.0[i] = (1.0 - bounds.cos_theta_o * bounds.cos_theta_o).max(0.0).sqrt();
+        self.cos_e.0[i] = bounds.cos_theta_e;
+        self.intensity.0[i] = bounds.intensity;
+        self.two_sided.0[i] = if bounds.two_sided { 1.0 } else { 0.0 };
+    }
+
+    /// How much each may contribute at `reference`: an estimate, 0 only if it contributes nothing.
+    #[inline]
+    pub(super) fn importance(&self, reference: &Reference) -> Lanes4 {
+        let (zero, one) = (Lanes4::splat(0.0), Lanes4::splat(1.0));
+        let p = reference.p;
+        let from_light = [
+            Lanes4::splat(p.x) - self.center[0],
+            Lanes4::splat(p.y) - self.center[1],
+            Lanes4::splat(p.z) - self.center[2],
+        ];
+        let true_distance_squared = dot(from_light, from_light).max(Lanes4::splat(1e-30));
+        let distance_squared = true_distance_squared.max(self.radius_squared).max(Lanes4::splat(1e-20));
+        let inverse_distance = one / true_distance_squared.sqrt();
+        // The angle theta_b that the box subtends; everything from within it.
+        let sin_squared = self.radius_squared / true_distance_squared;
+        let is_outside = one - sin_squared;
+        let sin_b = is_outside.select_above(zero, sin_squared.sqrt(), zero);
+        let cos_b = is_outside.select_above(zero, is_outside.max(zero).sqrt(), zero - one);
         // theta' = max(0, theta_w - theta_o - theta_b): the least angle between a normal and a direction to the point.
-        let mut cos_w = self.w.dot(wi).clamp(-1.0, 1.0);
-        if self.two_sided {
-            cos_w = cos_w.abs();
-        }
-        let (sin_o, cos_o) = (sine(self.cos_theta_o), self.cos_theta_o);
-        let (sin_x, cos_x) = subtract_clamped((sine(cos_w), cos_w), (sin_o, cos_o));
-        let (_, cos_prime) = subtract_clamped((sin_x, cos_x), (sin_b, cos_b));
-        if cos_prime <= self.cos_theta_e - COSINE_MARGIN {
-            return 0.0;
-        }
-        let mut importance = self.intensity * cos_prime.max(COSINE_MARGIN) / distance_squared;
+        let cos_w = (dot(self.w, from_light) * inverse_distance).max(zero - one).min(one);
+        let cos_w = self.two_sided.select_above(zero, cos_w.abs(), cos_w);
+        let from_cone = subtract_clamped([sine(cos_w), cos_w], [self.sin_o, self.cos_o]);
+        let [_, cos_prime] = subtract_clamped(from_cone, [sin_b, cos_b]);
+        let mut importance = self.intensity * cos_prime.max(Lanes4::splat(COSINE_MARGIN)) / distance_squared;
         if let Some(n) = reference.n {
-            let cos_i = wi.abs_dot_normal(n).min(1.0);
-            let (_, cos_i_prime) = subtract_clamped((sine(cos_i), cos_i), (sin_b, cos_b));
-            importance *= cos_i_prime.max(MIN_RECEIVER_FACTOR);
+            let n = [Lanes4::splat(n.x), Lanes4::splat(n.y), Lanes4::splat(n.z)];
+            let cos_i = (dot(n, from_light) * inverse_distance).abs().min(one);
+            let [_, cos_i_prime] = subtract_clamped([sine(cos_i), cos_i], [sin_b, cos_b]);
+            importance = importance * cos_i_prime.max(Lanes4::splat(MIN_RECEIVER_FACTOR));
         }
-        importance.clamp(1e-30, 1e30)
+        let importance = importance.max(Lanes4::splat(1e-30)).min(Lanes4::splat(1e30));
+        let importance = cos_prime.select_above(self.cos_e - Lanes4::splat(COSINE_MARGIN), importance, zero);
+        self.intensity.select_above(zero, importance, zero)
     }
 }
 
-fn sine(cosine: f32) -> f32 {
-    (1.0 - cosine * cosine).max(0.0).sqrt()
+#[inline(always)]
+fn dot(a: [Lanes4; 3], b: [Lanes4; 3]) -> Lanes4 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn sine(cosine: Lanes4) -> Lanes4 {
+    (Lanes4::splat(1.0) - cosine * cosine).max(Lanes4::splat(0.0)).sqrt()
 }
 
 /// Sine and cosine of max(0, a - b), for angles in [0, pi] given by sine and cosine.
-fn subtract_clamped((sin_a, cos_a): (f32, f32), (sin_b, cos_b): (f32, f32)) -> (f32, f32) {
-    if cos_a > cos_b {
-        return (0.0, 1.0);
-    }
-    (sin_a * cos_b - cos_a * sin_b, cos_a * cos_b + sin_a * sin_b)
+#[inline(always)]
+fn subtract_clamped([sin_a, cos_a]: [Lanes4; 2], [sin_b, cos_b]: [Lanes4; 2]) -> [Lanes4; 2] {
+    let sine = sin_a * cos_b - cos_a * sin_b;
+    let cosine = cos_a * cos_b + sin_a * sin_b;
+    [
+        cos_a.select_above(cos_b, Lanes4::splat(0.0), sine),
+        cos_a.select_above(cos_b, Lanes4::splat(1.0), cosine),
+    ]
 }
 
 /// A cone (axis, cosine of half angle) that holds both.

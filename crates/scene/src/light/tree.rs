@@ -1,36 +1,53 @@
-//! A binary tree over lights with places; lights at infinity stand apart
+//! A tree over lights with places, four children to a node; lights at infinity stand apart
 //! (Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting").
 //!
-//! From the root, a child is taken with probability in proportion to its importance for the point to be lit. The
-//! path to each light is kept as a bit trail, so that the probability of a given light is a walk down the same path.
-//! Built top-down: of 12 buckets along each axis, the split with the least sum of
-//! intensity x solid angle of emission x surface of the box is taken.
+//! From the root, a child is taken with probability in proportion to its importance for the point to be lit; the
+//! importance of all children of a node is computed at once. The path to each light is kept as a trail of turns, so that
+//! the probability of a given light is a walk down the same path. Built top-down: of 12 buckets along each axis, the split
+//! with the least sum of intensity x solid angle of emission x surface of the box is taken, until a node has four parts.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use etendue_geometry::Reference;
-use etendue_math::{Bounds3, ONE_MINUS_EPSILON, safe_acos};
+use etendue_math::{Bounds3, Lanes4, ONE_MINUS_EPSILON, safe_acos};
 
+use super::bounds::{BoundsOfFour, N_CHILDREN};
 use super::{Light, LightBounds, LightContext, LightId};
 
 const N_BUCKETS: usize = 12;
-/// From this depth on, groups are halved by count, so that bit trails end before 64.
-const MAX_COSTED_DEPTH: u32 = 30;
-/// Neither child of two that both matter is taken less often.
+/// From this depth on, groups are halved by count, so that trails end before 64 bits.
+const MAX_COSTED_DEPTH: u32 = 12;
+/// No child that matters is taken less often than this.
 const MIN_PROBABILITY: f32 = 1e-6;
+/// Bits of a trail per turn.
+const BITS_PER_TURN: u32 = N_CHILDREN.ilog2();
 
 #[derive(Clone, Copy, Debug)]
-enum Link {
+enum Child {
+    /// Nothing.
+    None,
     /// A light.
-    Leaf(LightId),
-    /// Index of the second child; the first follows its parent.
-    Second(u32),
+    Light(LightId),
+    /// Another node.
+    Node(u32),
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    bounds: LightBounds,
-    link: Link,
+    bounds: BoundsOfFour,
+    children: [Child; N_CHILDREN],
+}
+
+impl Node {
+    /// Weight of each child for the point to be lit, and their sum; all 0 if none matters.
+    #[inline]
+    fn weights(&self, reference: &Reference) -> ([f32; N_CHILDREN], f32) {
+        let importance = self.bounds.importance(reference);
+        let least = Lanes4::splat(MIN_PROBABILITY * importance.sum());
+        let zero = Lanes4::splat(0.0);
+        let weights = importance.select_above(zero, importance.max(least), zero);
+        (weights.0, weights.sum())
+    }
 }
 
 /// Where the tree has a light.
@@ -38,7 +55,7 @@ struct Node {
 enum Place {
     /// At infinity.
     Infinite,
-    /// At the end of this path from the root: the lowest bit is the first turn, 1 for second children.
+    /// At the end of this path from the root: the lowest bits tell the first turn.
     Trail(u64),
     /// Nowhere: it emits nothing.
     Dark,
@@ -47,6 +64,7 @@ enum Place {
 /// A tree over lights.
 #[derive(Clone, Debug)]
 pub struct LightTree {
+    /// The root first; none if no light has a place.
     nodes: Vec<Node>,
     infinite: Vec<LightId>,
     places: Vec<Place>,
@@ -72,7 +90,7 @@ impl LightTree {
                 None => {}
             }
         }
-        let mut builder = Builder { nodes: Vec::with_capacity(2 * finite.len()), places };
+        let mut builder = Builder { nodes: Vec::with_capacity(finite.len().div_ceil(2)), places };
         if !finite.is_empty() {
             builder.build(&mut finite, 0, 0);
         }
@@ -80,9 +98,13 @@ impl LightTree {
     }
 
     /// Probability to take a light at infinity.
+    #[inline]
     fn infinite_probability(&self) -> f32 {
+        if self.infinite.is_empty() {
+            return 0.0;
+        }
         let finite = if self.nodes.is_empty() { 0 } else { 1 };
-        self.infinite.len() as f32 / (self.infinite.len() + finite).max(1) as f32
+        self.infinite.len() as f32 / (self.infinite.len() + finite) as f32
     }
 
     /// A light for the point `reference`, with its probability.
@@ -94,45 +116,23 @@ impl LightTree {
             let index = ((u / p_infinite * n as f32) as usize).min(n - 1);
             return Some((self.infinite[index], p_infinite / n as f32));
         }
-        if self.nodes.is_empty() || self.nodes[0].bounds.importance(reference) <= 0.0 {
-            return None;
-        }
         let mut u = ((u - p_infinite) / (1.0 - p_infinite)).clamp(0.0, ONE_MINUS_EPSILON);
         let mut pmf = 1.0 - p_infinite;
-        let mut index = 0;
+        let mut node = self.nodes.first()?;
         loop {
-            let second = match self.nodes[index].link {
-                Link::Leaf(id) => return (pmf > 0.0).then_some((id, pmf)),
-                Link::Second(second) => second as usize,
-            };
-            let p_second = self.second_probability(index, second, reference)?;
-            let p_first = 1.0 - p_second;
-            if u < p_first {
-                index += 1;
-                pmf *= p_first;
-                u = (u / p_first).min(ONE_MINUS_EPSILON);
-            } else {
-                index = second;
-                pmf *= p_second;
-                u = ((u - p_first) / p_second).clamp(0.0, ONE_MINUS_EPSILON);
+            let (weights, sum) = node.weights(reference);
+            if sum <= 0.0 {
+                return None;
+            }
+            let (turn, rest) = choose(&weights, u * sum);
+            u = (rest / weights[turn]).clamp(0.0, ONE_MINUS_EPSILON);
+            pmf *= weights[turn] / sum;
+            match node.children[turn] {
+                Child::None => return None,
+                Child::Light(id) => return (pmf > 0.0).then_some((id, pmf)),
+                Child::Node(index) => node = &self.nodes[index as usize],
             }
         }
-    }
-
-    /// Probability of turning to the second child; `None` if neither matters.
-    fn second_probability(&self, index: usize, second: usize, reference: &Reference) -> Option<f32> {
-        let a = self.nodes[index + 1].bounds.importance(reference);
-        let b = self.nodes[second].bounds.importance(reference);
-        if a <= 0.0 && b <= 0.0 {
-            return None;
-        }
-        if a <= 0.0 {
-            return Some(1.0);
-        }
-        if b <= 0.0 {
-            return Some(0.0);
-        }
-        Some((b / (a + b)).clamp(MIN_PROBABILITY, 1.0 - MIN_PROBABILITY))
     }
 
     /// Probability with which [`sample`](Self::sample) takes `light`.
@@ -143,26 +143,37 @@ impl LightTree {
             Place::Infinite => return self.infinite_probability() / self.infinite.len() as f32,
             Place::Trail(trail) => trail,
         };
-        if self.nodes[0].bounds.importance(reference) <= 0.0 {
-            return 0.0;
-        }
         let mut pmf = 1.0 - self.infinite_probability();
-        let mut index = 0;
-        while let Link::Second(second) = self.nodes[index].link {
-            let Some(p_second) = self.second_probability(index, second as usize, reference) else {
+        let mut node = &self.nodes[0];
+        loop {
+            let (weights, sum) = node.weights(reference);
+            let turn = trail as usize % N_CHILDREN;
+            if weights[turn] <= 0.0 {
                 return 0.0;
-            };
-            if trail & 1 == 0 {
-                index += 1;
-                pmf *= 1.0 - p_second;
-            } else {
-                index = second as usize;
-                pmf *= p_second;
             }
-            trail >>= 1;
+            pmf *= weights[turn] / sum;
+            match node.children[turn] {
+                Child::Node(index) => node = &self.nodes[index as usize],
+                Child::Light(_) | Child::None => return pmf,
+            }
+            trail >>= BITS_PER_TURN;
         }
-        pmf
     }
+}
+
+/// The child in whose share of the line of all weights `position` lies, and how far into it; never one of weight 0
+/// while another has some.
+#[inline]
+fn choose(weights: &[f32; N_CHILDREN], position: f32) -> (usize, f32) {
+    let mut start = 0.0;
+    let mut chosen = (0, 0.0);
+    for (index, weight) in weights.iter().enumerate() {
+        if *weight > 0.0 && (position >= start || weights[chosen.0] <= 0.0) {
+            chosen = (index, position - start);
+        }
+        start += weight;
+    }
+    chosen
 }
 
 type Item = (LightId, LightBounds);
@@ -173,24 +184,42 @@ struct Builder {
 }
 
 impl Builder {
-    /// Appends the tree over `items` and returns its bounds.
-    fn build(&mut self, items: &mut [Item], trail: u64, depth: u32) -> LightBounds {
+    /// Appends the tree over `items`, of which there is at least one, and returns the index of its root.
+    fn build(&mut self, items: &mut [Item], trail: u64, depth: u32) -> u32 {
         let index = self.nodes.len();
-        if let [(id, bounds)] = items {
-            self.nodes.push(Node { bounds: *bounds, link: Link::Leaf(*id) });
-            self.places[id.0 as usize] = Place::Trail(trail);
-            return *bounds;
+        let mut node = Node { bounds: BoundsOfFour::EMPTY, children: [Child::None; N_CHILDREN] };
+        self.nodes.push(node);
+        for (turn, part) in split_in_four(items, depth).into_iter().enumerate() {
+            let bounds = part.iter().fold(LightBounds::EMPTY, |sum, (_, bounds)| sum.union(bounds));
+            node.bounds.set(turn, &bounds);
+            let trail = trail | (turn as u64) << (BITS_PER_TURN * depth);
+            node.children[turn] = if let [(id, _)] = part {
+                self.places[id.0 as usize] = Place::Trail(trail);
+                Child::Light(*id)
+            } else {
+                Child::Node(self.build(part, trail, depth + 1))
+            };
         }
-        let middle = split(items, depth);
-        self.nodes.push(Node { bounds: LightBounds::EMPTY, link: Link::Second(0) });
-        let (left, right) = items.split_at_mut(middle);
-        let first_bounds = self.build(left, trail, depth + 1);
-        let second = self.nodes.len();
-        let second_bounds = self.build(right, trail | 1 << depth, depth + 1);
-        let bounds = first_bounds.union(&second_bounds);
-        self.nodes[index] = Node { bounds, link: Link::Second(second as u32) };
-        bounds
+        self.nodes[index] = node;
+        index as u32
     }
+}
+
+/// Cuts `items` in up to four parts, none empty: the largest part is split until there are four.
+fn split_in_four(items: &mut [Item], depth: u32) -> Vec<&mut [Item]> {
+    let mut parts = vec![items];
+    while parts.len() < N_CHILDREN {
+        let Some(largest) = (0..parts.len()).filter(|i| parts[*i].len() > 1).max_by_key(|i| parts[*i].len())
+        else {
+            break;
+        };
+        let part = std::mem::take(&mut parts[largest]);
+        let middle = split(part, depth);
+        let (left, right) = part.split_at_mut(middle);
+        parts[largest] = left;
+        parts.insert(largest + 1, right);
+    }
+    parts
 }
 
 /// Orders `items` so that the two children are those before and from the returned index, neither empty.

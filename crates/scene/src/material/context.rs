@@ -1,6 +1,6 @@
 //! Where a material is evaluated.
 
-use etendue_geometry::SurfacePoint;
+use etendue_geometry::{SurfaceDerivatives, SurfacePoint};
 use etendue_math::{Normal3, Vector3};
 
 use crate::texture::TextureContext;
@@ -30,17 +30,29 @@ impl MaterialContext {
     /// From a point of a surface.
     #[inline]
     #[must_use]
-    pub fn new(texture: TextureContext, surface: &SurfacePoint, wo: Vector3) -> Self {
+    pub fn new(
+        texture: TextureContext,
+        point: &SurfacePoint,
+        derivatives: &SurfaceDerivatives,
+        wo: Vector3,
+    ) -> Self {
         Self {
             texture,
             wo,
-            ng: surface.ng,
-            ns: surface.ns,
-            shading_dpdu: surface.shading_dpdu,
-            shading_dpdv: surface.shading_dpdv,
-            dndu: surface.dndu,
-            dndv: surface.dndv,
+            ng: point.ng,
+            ns: point.ns,
+            shading_dpdu: derivatives.shading_dpdu,
+            shading_dpdv: derivatives.shading_dpdv,
+            dndu: derivatives.dndu,
+            dndv: derivatives.dndv,
         }
+    }
+
+    /// From a point of a surface whose material needs no derivatives.
+    #[inline]
+    #[must_use]
+    pub fn uniform(point: &SurfacePoint, wo: Vector3) -> Self {
+        Self::new(TextureContext::at(point), point, &SurfaceDerivatives::default(), wo)
     }
 
     /// With other shading tangents; their cross product becomes the normal, on the side of the geometric normal.

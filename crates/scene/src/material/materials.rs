@@ -17,6 +17,8 @@ pub struct MaterialId(pub u32);
 #[derive(Clone, Debug, Default)]
 pub struct Materials {
     materials: Vec<Material>,
+    /// Which of them look the same all over a surface.
+    uniform: Vec<bool>,
     normal_maps: Vec<NormalMap>,
 }
 
@@ -36,6 +38,7 @@ impl Materials {
                 "a mixture names a material that is not there"
             );
         }
+        self.uniform.push(material.is_uniform(self));
         self.materials.push(material);
         id
     }
@@ -86,6 +89,13 @@ impl Materials {
     #[must_use]
     pub fn normal_map(&self, id: NormalMapId) -> &NormalMap {
         &self.normal_maps[id.0 as usize]
+    }
+
+    /// True if the material needs neither tangents nor the change of texture coordinates over a pixel.
+    #[inline]
+    #[must_use]
+    pub fn is_uniform(&self, id: MaterialId) -> bool {
+        self.uniform[id.0 as usize]
     }
 
     /// True if the surface does not exist for light anywhere. A mixture does not count, even one of interfaces: paths

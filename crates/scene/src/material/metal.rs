@@ -52,6 +52,14 @@ impl Metal {
         SpectrumTexture::Constant(spectrum)
     }
 
+    /// True if it is the same all over a surface.
+    pub(super) const fn is_constant(&self) -> bool {
+        match self {
+            Self::Indices { eta, k } => eta.constant().is_some() && k.constant().is_some(),
+            Self::Reflectance(reflectance) => reflectance.constant().is_some(),
+        }
+    }
+
     /// Real and imaginary part of the index in vacuum.
     #[inline]
     pub(super) fn eta_k(

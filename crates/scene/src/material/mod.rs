@@ -15,6 +15,7 @@ mod normal_map;
 mod perturbation;
 mod roughness;
 mod spec;
+mod uniform;
 
 mod coated_conductor;
 mod coated_diffuse;

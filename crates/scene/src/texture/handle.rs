@@ -1,5 +1,6 @@
 //! Handles to textures: what materials, lights and shapes hold. A constant needs no arena, everything else is an id.
 
+use etendue_geometry::SurfacePoint;
 use etendue_math::{Normal3, Point2, Point3, Vector3};
 use etendue_spectrum::Spectrum;
 
@@ -74,4 +75,13 @@ pub struct TextureContext {
     pub dvdy: f32,
     /// Index of the face in the mesh as written by its author.
     pub face_index: i32,
+}
+
+impl TextureContext {
+    /// At a point of a surface, with unknown changes from pixel to pixel.
+    #[inline]
+    #[must_use]
+    pub fn at(point: &SurfacePoint) -> Self {
+        Self { p: point.p, n: point.ns, uv: point.uv, face_index: point.face_index, ..Self::default() }
+    }
 }

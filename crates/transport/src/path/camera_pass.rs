@@ -5,7 +5,7 @@ use std::cell::Cell;
 use etendue_geometry::Hit;
 use etendue_math::{Point2, Ray, Sampler};
 use etendue_scene::camera::CameraRay;
-use etendue_scene::film::{Features, FilmSums, FilmTile, PixelBounds, PixelSample};
+use etendue_scene::film::{Features, FilmTile, PixelSample, TileSamples};
 use etendue_scene::{Film, Scene};
 use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;
@@ -86,33 +86,36 @@ pub struct CameraPass<'p> {
 
 impl CameraPass<'_> {
     /// Adds one sample to every pixel. `radiance` follows a path from the camera and returns the radiance it brings.
+    /// `memory` is what tiles are gathered in; passes that share it spare the system the work.
     pub fn run(
         &self,
         scene: &Scene,
         pass: u64,
         film: &mut Film,
         control: &Control<'_>,
+        memory: &mut Vec<TileSamples>,
         radiance: impl Fn(&Tracer<'_>, &mut CameraPath<'_, '_>) -> Sampled + Sync,
     ) -> PassEnd {
         let tiles = film.tiles(TILE_SIZE);
-        let finished: Vec<Option<FilmSums>> = tiles
+        memory.resize_with(tiles.len(), TileSamples::default);
+        let finished: Vec<Option<TileSamples>> = tiles
             .into_par_iter()
-            .map(|bounds| {
+            .zip(memory.par_drain(..))
+            .map(|(bounds, memory)| {
                 if control.is_cancelled() {
                     return None;
                 }
                 let tracer = Tracer::new(scene);
-                let sums = self.run_tile(&tracer, pass, film, bounds, &radiance);
+                let samples = self.run_tile(&tracer, pass, film.start_tile(bounds, memory), &radiance);
                 control.tile_done(bounds.n_pixels() as u64, tracer.counts());
-                Some(sums)
+                Some(samples)
             })
             .collect();
         let complete = finished.iter().all(Option::is_some);
+        memory.extend(finished.into_iter().flatten());
         // Whole passes only, but for the very first: better a part of a picture than none.
         if complete || film.n_passes() == 0 {
-            for sums in finished.iter().flatten() {
-                film.add_sums(sums);
-            }
+            film.add_tiles(memory);
         }
         if complete { PassEnd::Complete } else { PassEnd::Cancelled }
     }
@@ -121,17 +124,15 @@ impl CameraPass<'_> {
         &self,
         tracer: &Tracer<'_>,
         pass: u64,
-        film: &Film,
-        bounds: PixelBounds,
+        mut tile: FilmTile<'_>,
         radiance: &(impl Fn(&Tracer<'_>, &mut CameraPath<'_, '_>) -> Sampled + Sync),
-    ) -> FilmSums {
-        let mut tile = film.start_tile(bounds);
+    ) -> TileSamples {
         let mut layers = self.expressions.recorder();
-        for pixel in bounds.pixels() {
+        for pixel in tile.bounds().pixels() {
             layers.restart();
             self.add_sample(tracer, pass, pixel, &mut tile, &mut layers, radiance);
         }
-        Film::finish_tile(tile)
+        tile.finish()
     }
 
     fn add_sample(
