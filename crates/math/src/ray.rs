@@ -39,17 +39,9 @@ impl Ray {
 #[inline]
 #[must_use]
 pub fn offset_ray_origin(p: Point3, p_error: Vector3, n: Normal3, w: Vector3) -> Point3 {
-    let distance = n.x.abs() * p_error.x + n.y.abs() * p_error.y + n.z.abs() * p_error.z;
-    let offset = if n.dot_vector(w) < 0.0 { n.as_vector() * -distance } else { n.as_vector() * distance };
-    let moved = p + offset;
-    let round_away = |value: f32, offset: f32| {
-        if offset > 0.0 {
-            value.next_up()
-        } else if offset < 0.0 {
-            value.next_down()
-        } else {
-            value
-        }
-    };
-    Point3::new(round_away(moved.x, offset.x), round_away(moved.y, offset.y), round_away(moved.z, offset.z))
+    // The sum is rounded too, by half of these at most, and by the last factor where the offset exceeds the point.
+    let error = p_error + p.as_vector().abs() * f32::EPSILON;
+    let distance =
+        (n.x.abs() * error.x + n.y.abs() * error.y + n.z.abs() * error.z) * (1.0 + 8.0 * f32::EPSILON);
+    p + n.as_vector() * distance.copysign(n.dot_vector(w))
 }

@@ -4,7 +4,7 @@ use etendue_geometry::{Geometry, Hit, Reference, SurfaceDerivatives, SurfacePoin
 use etendue_math::{Bounds3, Point3, Ray, SamplerSettings, Vector3, hash64, offset_ray_origin};
 use etendue_spectrum::{Sampled, Wavelengths};
 
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, BsdfKind, Diffuse};
 use crate::camera::Camera;
 use crate::document::Entity;
 use crate::film::FilmSettings;
@@ -182,6 +182,10 @@ impl Scene {
     #[inline]
     #[must_use]
     pub fn bsdf(&self, surface: &Surface, lambda: &mut Wavelengths) -> Option<Bsdf> {
+        if let Some(reflectance) = self.materials.uniform_diffuse(surface.material) {
+            let diffuse = Diffuse::new(reflectance.sample(&self.textures.spectra, lambda));
+            return Some(Bsdf::isotropic(surface.point.ns, surface.point.ng, BsdfKind::Diffuse(diffuse)));
+        }
         let context = if self.materials.is_uniform(surface.material) {
             MaterialContext::uniform(&surface.point, surface.wo)
         } else {

@@ -6,8 +6,11 @@
 //! value of 1. For the same reason the bands of a path ([`crate::Bands`]) are multiplied by ∫ ȳ dλ: they are linear sRGB of
 //! light divided by it. White balance maps the white of daylight of a temperature to the white of the output space.
 
+use etendue_math::Lanes4;
+
 use crate::cie::{CIE_Y_INTEGRAL, color_matching};
 use crate::matrix::{Matrix3, multiply, transform};
+use crate::tables::dense_place;
 use crate::xyz::white_balance_f64;
 use crate::{
     ColorSpace, ColorSpaceName, LAMBDA_MIN_NM, N_DENSE, N_LAMBDA, Sampled, SpectrumTables, Wavelengths, Xyz,
@@ -119,17 +122,13 @@ impl Sensor {
             return std::array::from_fn(|c| (0..3).map(|band| rgb[band] * self.band_response[band][c]).sum());
         }
         let weight = l.safe_div(wavelengths.pdf() * N_LAMBDA as f32).to_array();
-        let mut sum = [0.0; 4];
+        let mut sum = Lanes4::splat(0.0);
         for (w, nm) in weight.into_iter().zip(wavelengths.lambda_nm()) {
-            let t = (nm - LAMBDA_MIN_NM).clamp(0.0, (N_DENSE - 1) as f32);
-            let i = (t as usize).min(N_DENSE - 2);
-            let f = t - i as f32;
-            let (a, b) = (&self.response[i], &self.response[i + 1]);
-            for c in 0..4 {
-                sum[c] += w * (a[c] * (1.0 - f) + b[c] * f);
-            }
+            let (i, f) = dense_place(nm);
+            let [a, b] = [self.response[i], self.response[i + 1]].map(Lanes4);
+            sum = sum + a * Lanes4::splat(w * (1.0 - f)) + b * Lanes4::splat(w * f);
         }
-        sum
+        sum.0
     }
 }
 

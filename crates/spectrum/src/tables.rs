@@ -131,12 +131,19 @@ pub(crate) fn dense_nm(i: usize) -> f32 {
     LAMBDA_MIN_NM + i as f32
 }
 
+/// Where a wavelength in nm lies in a dense table: the entry below it, and the share of the next one.
+#[inline]
+pub(crate) fn dense_place(nm: f32) -> (usize, f32) {
+    let t = (nm - LAMBDA_MIN_NM).clamp(0.0, (N_DENSE - 1) as f32);
+    // Of an integer below 2^31, which the processor converts in one step.
+    let i = (t as i32 as usize).min(N_DENSE - 2);
+    (i, t - i as f32)
+}
+
 /// Linear interpolation in a dense table at a wavelength in nm inside the rendered range.
 #[inline]
 pub(crate) fn dense_lookup(table: &[f32], nm: f32) -> f32 {
-    let t = (nm - LAMBDA_MIN_NM).clamp(0.0, (N_DENSE - 1) as f32);
-    let i = (t as usize).min(N_DENSE - 2);
-    let f = t - i as f32;
+    let (i, f) = dense_place(nm);
     table[i] * (1.0 - f) + table[i + 1] * f
 }
 

@@ -16,6 +16,13 @@ pub struct Diffuse {
 }
 
 impl Diffuse {
+    /// Of that albedo, limited to [0, 1].
+    #[inline]
+    #[must_use]
+    pub fn new(reflectance: Sampled) -> Self {
+        Self { reflectance: reflectance.clamp(0.0, 1.0) }
+    }
+
     /// The lobes present.
     #[inline]
     #[must_use]

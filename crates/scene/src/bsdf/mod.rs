@@ -183,6 +183,14 @@ impl Bsdf {
         Self { frame: Frame::from_zx(ns.as_vector(), dpdu), ng, kind }
     }
 
+    /// From the shading normal `ns` and the geometric normal `ng`, both unit vectors, for a model without a preferred
+    /// tangent.
+    #[inline]
+    #[must_use]
+    pub fn isotropic(ns: Normal3, ng: Normal3, kind: BsdfKind) -> Self {
+        Self { frame: Frame::from_z(ns.as_vector()), ng, kind }
+    }
+
     /// The shading frame.
     #[inline]
     #[must_use]

@@ -82,6 +82,7 @@ impl Default for Shutter {
 pub struct Camera {
     projection: Projection,
     world_from_camera: AnimatedTransform,
+    is_moving: bool,
     shutter: Shutter,
     /// The part of the film that is rendered, in pixels: elsewhere the camera takes no light.
     crop: Bounds2,
@@ -99,7 +100,8 @@ impl Camera {
         crop: Bounds2,
     ) -> Self {
         let differentials = MinimumDifferentials::new(&projection, resolution);
-        Self { projection, world_from_camera, shutter, crop, differentials }
+        let is_moving = world_from_camera.is_animated();
+        Self { projection, world_from_camera, is_moving, shutter, crop, differentials }
     }
 
     /// The projection.
@@ -130,11 +132,7 @@ impl Camera {
     /// Placement at a time in seconds.
     #[inline]
     pub fn transform_at(&self, time: f32) -> Transform {
-        if self.world_from_camera.is_animated() {
-            self.world_from_camera.at(time)
-        } else {
-            self.world_from_camera.start
-        }
+        if self.is_moving { self.world_from_camera.at(time) } else { self.world_from_camera.start }
     }
 
     /// The ray through raster position `p_film` (pixels) for a random point of the lens and a random time.
@@ -142,7 +140,12 @@ impl Camera {
     #[must_use]
     pub fn sample_ray(&self, p_film: Point2, u_lens: Point2, u_time: f32) -> Option<CameraRay> {
         let time = self.sample_time(u_time);
-        let mut ray = self.transform_at(time).ray(&self.projection.ray(p_film, u_lens));
+        let camera_ray = self.projection.ray(p_film, u_lens);
+        let mut ray = if self.is_moving {
+            self.world_from_camera.at(time).ray(&camera_ray)
+        } else {
+            self.world_from_camera.start.ray(&camera_ray)
+        };
         ray.direction = ray.direction.try_normalized()?;
         ray.time = time;
         Some(CameraRay { ray, weight: 1.0 })

@@ -39,7 +39,6 @@ impl DiffuseMaterial {
 
     #[inline]
     pub(super) fn bsdf(&self, textures: &Textures, ctx: &MaterialContext, lambda: &Wavelengths) -> BsdfKind {
-        let reflectance = textures.eval_spectrum(self.reflectance, &ctx.texture, lambda).clamp(0.0, 1.0);
-        BsdfKind::Diffuse(Diffuse { reflectance })
+        BsdfKind::Diffuse(Diffuse::new(textures.eval_spectrum(self.reflectance, &ctx.texture, lambda)))
     }
 }

@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-use etendue_spectrum::Wavelengths;
+use etendue_spectrum::{Spectrum, Wavelengths};
 
-use super::{Material, MaterialContext, NormalMap, NormalMapId};
+use super::{DiffuseMaterial, Material, MaterialContext, NormalMap, NormalMapId, Perturbation};
 use crate::bsdf::Bsdf;
 use crate::parameters::Parameters;
-use crate::texture::Textures;
+use crate::texture::{SpectrumTexture, Textures};
 
 /// Index of a material in [`Materials`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -96,6 +96,19 @@ impl Materials {
     #[must_use]
     pub fn is_uniform(&self, id: MaterialId) -> bool {
         self.uniform[id.0 as usize]
+    }
+
+    /// The reflectance of a diffuse material that is the same all over a surface: of most surfaces of most scenes.
+    #[inline]
+    #[must_use]
+    pub fn uniform_diffuse(&self, id: MaterialId) -> Option<&Spectrum> {
+        match self.get(id) {
+            Material::Diffuse(DiffuseMaterial {
+                reflectance: SpectrumTexture::Constant(reflectance),
+                perturbation: Perturbation::None,
+            }) => Some(reflectance),
+            _ => None,
+        }
     }
 
     /// True if the surface does not exist for light anywhere. A mixture does not count, even one of interfaces: paths
