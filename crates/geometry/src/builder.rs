@@ -2,7 +2,7 @@
 
 use etendue_math::{AnimatedTransform, Transform};
 
-use crate::bvh::{self, BuildPrimitive, Bvh, INSTANCE, PrimitiveRef};
+use crate::bvh::{self, BuildPrimitive, Bvh, INSTANCE, PrimitiveRef, TriangleSource};
 use crate::geometry::Geometry;
 use crate::hit::{GeometryId, ObjectId};
 use crate::instance::Instance;
@@ -83,15 +83,15 @@ impl GeometryBuilder {
     #[must_use]
     pub fn build(self) -> Geometry {
         let entities = self.entities;
-        let vertices =
-            |reference: PrimitiveRef| entities[reference.geometry as usize].triangle(reference.primitive);
         let mut primitives: Vec<Vec<BuildPrimitive>> = vec![Vec::new(); self.n_objects as usize + 1];
+        let mut seconds = Vec::with_capacity(entities.len());
         for (index, (entity, group)) in entities.iter().zip(&self.groups).enumerate() {
-            entity.append_primitives(index as u32, &mut primitives[*group as usize]);
+            seconds.push(entity.append_primitives(index as u32, &mut primitives[*group as usize]));
         }
+        let source = Triangles { entities: &entities, seconds };
         let mut primitives = primitives.into_iter();
         let mut world = primitives.next().unwrap_or_default();
-        let objects: Vec<Bvh> = primitives.map(|own| bvh::build(own, &vertices)).collect();
+        let objects: Vec<Bvh> = primitives.map(|own| bvh::build(own, &source)).collect();
         let mut instances = Vec::with_capacity(self.instances.len());
         for (index, (object, world_from_object)) in self.instances.iter().enumerate() {
             let bounds = objects[object.0 as usize].bounds();
@@ -102,8 +102,25 @@ impl GeometryBuilder {
             }
             instances.push(instance);
         }
-        let mut groups = vec![bvh::build(world, &vertices)];
+        let mut groups = vec![bvh::build(world, &source)];
         groups.extend(objects);
         Geometry::new(entities, self.groups, groups, instances)
+    }
+}
+
+/// All triangles, for the hierarchies.
+struct Triangles<'a> {
+    entities: &'a [Entity],
+    /// See [`bvh::append_pairs`], for each entity.
+    seconds: Vec<Vec<u32>>,
+}
+
+impl TriangleSource for Triangles<'_> {
+    fn corners(&self, triangle: PrimitiveRef) -> [[f32; 3]; 3] {
+        self.entities[triangle.geometry as usize].triangle(triangle.primitive)
+    }
+
+    fn second(&self, first: PrimitiveRef) -> Option<u32> {
+        bvh::second_of(&self.seconds[first.geometry as usize], first.primitive)
     }
 }

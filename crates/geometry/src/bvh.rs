@@ -20,8 +20,8 @@ mod wide;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use build::{BuildPrimitive, build};
-pub(crate) use pair::pair_up;
+pub(crate) use build::{BuildPrimitive, TriangleSource, build};
+pub(crate) use pair::{append_pairs, second_of};
 pub(crate) use ray::TraversalRay;
 
 use etendue_math::{Bounds3, Ray};

@@ -16,7 +16,7 @@ pub struct Geometry {
     /// Group of each entity.
     entity_groups: Vec<u32>,
     /// Hierarchy of the world, then of each object.
-    groups: Vec<Bvh>,
+    pub(crate) groups: Vec<Bvh>,
     instances: Vec<Instance>,
     kernel: Kernel,
 }

@@ -69,6 +69,13 @@ impl Node {
         self.children[slot] = child;
     }
 
+    /// The box of one child.
+    #[cfg(test)]
+    pub(super) fn child_bounds(&self, slot: usize) -> Box3 {
+        let corner = |first: usize| std::array::from_fn(|axis| self.planes[first + axis][slot]);
+        Box3 { min: corner(0), max: corner(3) }
+    }
+
     /// Which children the ray meets with t in (0, `t_max`], one bit each, and where it enters them; `far` is `t_max`
     /// with room for rounding.
     ///

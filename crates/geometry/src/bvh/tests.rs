@@ -3,7 +3,7 @@ use etendue_math::{Bounds3, Point3, Ray, Rng, Vector3, offset_ray_origin};
 use super::build::Box3;
 use super::lanes::{Lanes, Portable};
 use super::node::{Node, SlabRay, leaf, leaf_range};
-use super::{BuildPrimitive, Bvh, PrimitiveRef, TraversalRay, build, intersect_triangle};
+use super::{TraversalRay, intersect_triangle};
 use crate::test_support::{any, ball, brute_force, cube, direction, point_in_cube, ray, single, soup};
 use crate::{Hit, Shape, TriangleMesh};
 use etendue_math::Transform;
@@ -293,39 +293,6 @@ fn kernel_ray(rng: &mut Rng, mesh: &TriangleMesh) -> Ray {
         }
         _ => free,
     }
-}
-
-fn triangles(n: usize, position: impl Fn(usize) -> [[f32; 3]; 3]) -> Bvh {
-    let vertices: Vec<[[f32; 3]; 3]> = (0..n).map(position).collect();
-    let reference = |i: usize| PrimitiveRef { geometry: 0, primitive: i as u32 };
-    let primitives =
-        vertices.iter().enumerate().map(|(i, v)| BuildPrimitive::triangle(reference(i), v)).collect();
-    build(primitives, &|reference: PrimitiveRef| vertices[reference.primitive as usize])
-}
-
-/// Trees that defeat the heuristic still have a bounded depth: equal boxes, and sizes that grow geometrically.
-#[test]
-fn degenerate_distributions_build() {
-    let same = triangles(1000, |_| [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
-    assert!(same.n_nodes() < 1000);
-    let growing = triangles(1000, |i| {
-        let s = 1.15_f32.powi(i as i32 - 500);
-        [[s, 0.0, 0.0], [s, s, 0.0], [s, 0.0, s]]
-    });
-    assert!(growing.n_nodes() < 1000);
-}
-
-/// Determinism: the tree does not depend on the number of threads.
-#[test]
-fn the_tree_is_the_same_for_any_number_of_threads() {
-    let mesh = soup(80_000, 0.02, 9);
-    let vertices = |i: usize| mesh.indices[i].map(|v| mesh.positions[v as usize]).map(|p| [p.x, p.y, p.z]);
-    let build_with = |n_threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().expect("threads start");
-        pool.install(|| format!("{:?}", triangles(mesh.indices.len(), vertices)))
-    };
-    let one = build_with(1);
-    assert!(one == build_with(2) && one == build_with(3));
 }
 
 /// The hierarchy of a large mesh needs at most 70 bytes per triangle.

@@ -51,14 +51,14 @@ impl TriangleBlock {
     pub(super) fn set(&mut self, place: usize, pair: Pair, vertices: impl Fn(PrimitiveRef) -> [[f32; 3]; 3]) {
         let first = vertices(pair.first);
         self.geometry[place] = pair.first.geometry;
-        let Some(second) = pair.second() else {
+        let Some(second) = pair.second else {
             self.set_triangle(place, pair.first.primitive, &first, 0);
             return;
         };
-        let vertices = vertices(second);
+        let vertices = vertices(PrimitiveRef { primitive: second, ..pair.first });
         let (i, j) = super::pair::common_edge(&first, &vertices).expect("a pair has a common edge");
         self.set_triangle(place, pair.first.primitive, &first, (i + 1) % 3);
-        self.set_triangle(place + 4, second.primitive, &vertices, (j + 1) % 3);
+        self.set_triangle(place + 4, second, &vertices, (j + 1) % 3);
     }
 
     /// Sets the first two corners of a lane, and the third by way of its twin.
@@ -71,6 +71,15 @@ impl TriangleBlock {
         }
         self.primitive[lane] = primitive;
         self.first_corner[lane] = first_corner as u8;
+    }
+
+    /// The triangles in a place.
+    #[cfg(test)]
+    pub(super) fn pair(&self, place: usize) -> Option<Pair> {
+        let exists = |primitive: &u32| *primitive != u32::MAX;
+        let first = self.reference(place);
+        let second = Some(self.primitive[place + 4]).filter(exists);
+        exists(&first.primitive).then_some(Pair { first, second })
     }
 
     /// What a lane holds.

@@ -1,7 +1,5 @@
 //! A shape in the space of its group, ready for intersection: one `match` per operation.
 
-use rayon::prelude::*;
-
 use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray, Transform, Vector3};
 
 use super::cylinder::Cylinder;
@@ -11,7 +9,7 @@ use super::quadric::{Quadric, QuadricShape};
 use super::sphere::Sphere;
 use super::triangles::Triangles;
 use super::{Candidates, LocalSurface, Shape};
-use crate::bvh::{BuildPrimitive, PrimitiveRef, intersect_triangle, pair_up};
+use crate::bvh::{BuildPrimitive, PrimitiveRef, append_pairs, intersect_triangle};
 use crate::double;
 use crate::geometry::GeometryCounts;
 use crate::hit::{Reference, ShapeSample, SurfacePoint};
@@ -53,10 +51,15 @@ impl Entity {
     }
 
     /// Appends what the hierarchy has to hold; primitives that cannot be hit are left out.
-    pub(crate) fn append_primitives(&self, geometry: u32, primitives: &mut Vec<BuildPrimitive>) {
+    /// Returns the second triangles of pairs.
+    pub(crate) fn append_primitives(&self, geometry: u32, primitives: &mut Vec<BuildPrimitive>) -> Vec<u32> {
         let reference = |primitive: u32| PrimitiveRef { geometry, primitive };
         match self {
-            Self::Triangles(triangles) => append_triangles(triangles, geometry, primitives),
+            Self::Triangles(triangles) => {
+                let mesh = triangles.mesh();
+                let corners = |t: u32| triangles.is_valid(t).then(|| self.triangle(t));
+                return append_pairs(geometry, &mesh.indices, mesh.positions.len(), corners, primitives);
+            }
             Self::Patches(patches) => primitives.extend(
                 (0..self.n_primitives())
                     .filter(|&patch| patches.is_valid(patch))
@@ -69,6 +72,7 @@ impl Entity {
                 }
             }
         }
+        Vec::new()
     }
 
     /// Corners of a triangle.
@@ -233,16 +237,4 @@ impl Entity {
             Self::Quadric(_) => counts.n_quadrics += 1,
         }
     }
-}
-
-/// Appends the triangles that can be hit, in pairs, in parallel.
-fn append_triangles(triangles: &Triangles, geometry: u32, primitives: &mut Vec<BuildPrimitive>) {
-    const CHUNK: u32 = 1 << 13;
-    let n = triangles.mesh().indices.len() as u32;
-    let corners = |t: u32| triangles.is_valid(t).then(|| triangles.positions(t).map(|p| [p.x, p.y, p.z]));
-    let pairs: Vec<Vec<BuildPrimitive>> = (0..n.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| pair_up(geometry, chunk * CHUNK..n.min((chunk + 1) * CHUNK), corners))
-        .collect();
-    primitives.extend(pairs.into_iter().flatten());
 }

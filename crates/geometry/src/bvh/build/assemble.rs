@@ -2,8 +2,10 @@
 
 use rayon::prelude::*;
 
+use super::TriangleSource;
 use super::primitive::BuildPrimitive;
 use crate::bvh::node::{EMPTY, INNER, ITEMS, Node, TRIANGLES, leaf, leaf_range, node_index};
+use crate::bvh::pair::Pair;
 use crate::bvh::triangle_block::TriangleBlock;
 use crate::bvh::{Bvh, PrimitiveRef};
 use etendue_math::Bounds3;
@@ -14,7 +16,7 @@ pub(super) fn assemble(
     chunks: Vec<Vec<Node>>,
     primitives: &[BuildPrimitive],
     bounds: Bounds3,
-    vertices: &(impl Fn(PrimitiveRef) -> [[f32; 3]; 3] + Sync),
+    source: &impl TriangleSource,
 ) -> Bvh {
     let mut nodes: Vec<Node> = Vec::with_capacity(chunks.iter().map(Vec::len).sum());
     let mut leaves = Leaves { blocks: Vec::with_capacity(primitives.len() / 3), items: Vec::new() };
@@ -34,7 +36,9 @@ pub(super) fn assemble(
         let first = (run >> 2) as usize;
         let mut block = TriangleBlock::EMPTY;
         for (lane, primitive) in primitives[first..=first + (run & 3) as usize].iter().enumerate() {
-            block.set(lane, primitive.pair(), vertices);
+            let first = primitive.reference();
+            let second = if primitive.is_pair() { source.second(first) } else { None };
+            block.set(lane, Pair { first, second }, |reference| source.corners(reference));
         }
         block
     };
@@ -64,7 +68,7 @@ impl Leaves {
     fn append_items(&mut self, run: u32, primitives: &[BuildPrimitive]) -> u32 {
         let range = leaf_range(run);
         let first = self.items.len();
-        self.items.extend(primitives[range.clone()].iter().map(BuildPrimitive::item_reference));
+        self.items.extend(primitives[range.clone()].iter().map(BuildPrimitive::reference));
         leaf(ITEMS, first, range.len())
     }
 }

@@ -11,7 +11,7 @@ const MANY: usize = 32;
 /// Bins per axis for few.
 const FEW: usize = 8;
 /// From here on there are many.
-const FEW_PRIMITIVES: usize = 64;
+const FEW_PRIMITIVES: usize = 32;
 
 /// How centroids map to bins.
 #[derive(Clone, Copy, Debug)]

@@ -7,7 +7,6 @@ use etendue_math::Bounds3;
 use glam::{Vec4, Vec4Swizzles};
 
 use crate::bvh::PrimitiveRef;
-use crate::bvh::pair::Pair;
 
 /// A box as arrays, quick to index by axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,14 +69,13 @@ pub(crate) struct BuildPrimitive {
 const PLAIN: u32 = 1 << 30;
 /// Set in the number of a primitive that is no triangle.
 const ITEM: u32 = 1 << 31;
-/// The upper bits of the entity of a pair of triangles hold the distance to the second one.
-const DISTANCE_SHIFT: u32 = 28;
+/// Set in the number of the first triangle of a pair.
+const PAIR: u32 = 1 << 29;
 
 impl BuildPrimitive {
     /// A triangle with corners that are finite.
     #[inline]
     pub(crate) fn triangle(reference: PrimitiveRef, vertices: &[[f32; 3]; 3]) -> Self {
-        assert!(reference.geometry < 1 << DISTANCE_SHIFT, "too many shapes");
         let [a, b, c] = vertices.map(|[x, y, z]| Vec4::new(x, y, z, 0.0));
         Self::new(reference, 0, a.min(b).min(c), a.max(b).max(c))
     }
@@ -90,7 +88,7 @@ impl BuildPrimitive {
 
     #[inline(always)]
     fn new(reference: PrimitiveRef, kind: u32, min: Vec4, max: Vec4) -> Self {
-        assert!(reference.primitive < PLAIN, "too many primitives");
+        assert!(reference.primitive < PAIR, "too many primitives");
         let bits = |bits: u32| f32::from_bits(bits ^ PLAIN);
         // Adding 0 makes -0 to 0, so that minima do not depend on the order.
         let min = (min + Vec4::ZERO).with_w(bits(reference.geometry));
@@ -98,36 +96,40 @@ impl BuildPrimitive {
         Self { bounds: Box4 { min, max } }
     }
 
-    /// This triangle and another one of its mesh, `distance` behind it.
+    /// This triangle and another one of its mesh.
     #[inline]
-    pub(crate) fn paired(&self, second: &Self, distance: u32) -> Self {
-        debug_assert!(distance <= Pair::MAX_DISTANCE);
+    pub(crate) fn paired(&self, second: &Self) -> Self {
         let bounds = self.bounds.union(&second.bounds);
-        let geometry = self.bounds.min.w.to_bits() ^ distance << DISTANCE_SHIFT;
-        let min = bounds.min.with_w(f32::from_bits(geometry));
-        Self { bounds: Box4 { min, max: bounds.max.with_w(self.bounds.max.w) } }
+        let primitive = f32::from_bits(self.bounds.max.w.to_bits() | PAIR);
+        Self { bounds: Box4 { min: bounds.min.with_w(self.bounds.min.w), max: bounds.max.with_w(primitive) } }
     }
 
-    /// Half the surface area of the box.
-    pub(crate) fn half_area(&self) -> f32 {
-        self.bounds.half_area()
+    /// By how much the area of the box around both exceeds the sum of their areas.
+    #[inline]
+    pub(crate) fn union_growth(&self, other: &Self) -> f32 {
+        self.bounds.union(&other.bounds).half_area() - (self.bounds.half_area() + other.bounds.half_area())
     }
 
-    fn bits(&self) -> [u32; 2] {
-        [self.bounds.min.w.to_bits() ^ PLAIN, self.bounds.max.w.to_bits() ^ PLAIN]
+    /// True if the primitive is two triangles.
+    #[inline]
+    pub(crate) fn is_pair(&self) -> bool {
+        self.bounds.max.w.to_bits() & PAIR != 0
     }
 
-    /// What a primitive is that is no triangle.
-    pub(super) fn item_reference(&self) -> PrimitiveRef {
-        let [geometry, primitive] = self.bits();
-        PrimitiveRef { geometry, primitive: primitive & !ITEM }
+    /// The number of the first triangle in its mesh.
+    #[inline]
+    pub(crate) fn first_triangle(&self) -> u32 {
+        self.reference().primitive
     }
 
-    /// Which triangles the primitive is.
-    pub(super) fn pair(&self) -> Pair {
-        let [geometry, primitive] = self.bits();
-        let first = PrimitiveRef { geometry: geometry & ((1 << DISTANCE_SHIFT) - 1), primitive };
-        Pair { first, distance: geometry >> DISTANCE_SHIFT }
+    /// What the primitive is; of a pair, the first triangle.
+    #[inline]
+    pub(super) fn reference(&self) -> PrimitiveRef {
+        let bits = |w: f32| w.to_bits() ^ PLAIN;
+        PrimitiveRef {
+            geometry: bits(self.bounds.min.w),
+            primitive: bits(self.bounds.max.w) & !(ITEM | PAIR),
+        }
     }
 
     #[inline]
