@@ -1,6 +1,6 @@
 //! From shapes to [`Geometry`].
 
-use etendue_math::{AnimatedTransform, Transform};
+use etendue_math::{AnimatedTransform, Bounds3, Transform};
 
 use crate::bvh::{self, BuildPrimitive, Bvh, INSTANCE, PrimitiveRef, TriangleSource};
 use crate::geometry::Geometry;
@@ -83,12 +83,7 @@ impl GeometryBuilder {
     #[must_use]
     pub fn build(self) -> Geometry {
         let entities = self.entities;
-        let mut primitives: Vec<Vec<BuildPrimitive>> = vec![Vec::new(); self.n_objects as usize + 1];
-        let mut seconds = Vec::with_capacity(entities.len());
-        for (index, (entity, group)) in entities.iter().zip(&self.groups).enumerate() {
-            seconds.push(entity.append_primitives(index as u32, &mut primitives[*group as usize]));
-        }
-        let source = Triangles { entities: &entities, seconds };
+        let (primitives, source) = collect(&entities, &self.groups, self.n_objects as usize + 1, |_| true);
         let mut primitives = primitives.into_iter();
         let mut world = primitives.next().unwrap_or_default();
         let objects: Vec<Bvh> = primitives.map(|own| bvh::build(own, &source)).collect();
@@ -96,16 +91,48 @@ impl GeometryBuilder {
         for (index, (object, world_from_object)) in self.instances.iter().enumerate() {
             let bounds = objects[object.0 as usize].bounds();
             let instance = Instance::new(object.0 + 1, world_from_object);
-            if let Some(bounds) = Instance::world_bounds(world_from_object, bounds) {
-                let reference = PrimitiveRef { geometry: INSTANCE, primitive: index as u32 };
-                world.push(BuildPrimitive::item(reference, bounds));
-            }
+            world.extend(instance_primitive(index as u32, instance.world_bounds(bounds)));
             instances.push(instance);
         }
         let mut groups = vec![bvh::build(world, &source)];
         groups.extend(objects);
         Geometry::new(entities, self.groups, groups, instances)
     }
+}
+
+/// Primitives of the groups that are wanted, and where to look up their triangles.
+fn collect<'e>(
+    entities: &'e [Entity],
+    entity_groups: &[u32],
+    n_groups: usize,
+    is_wanted: impl Fn(u32) -> bool,
+) -> (Vec<Vec<BuildPrimitive>>, Triangles<'e>) {
+    let mut primitives = vec![Vec::new(); n_groups];
+    let mut seconds = vec![Vec::new(); entities.len()];
+    for (index, (entity, &group)) in entities.iter().zip(entity_groups).enumerate() {
+        if is_wanted(group) {
+            seconds[index] = entity.append_primitives(index as u32, &mut primitives[group as usize]);
+        }
+    }
+    (primitives, Triangles { entities, seconds })
+}
+
+/// An instance for the hierarchy of the world, if there is anything to hit.
+fn instance_primitive(index: u32, bounds: Option<Bounds3>) -> Option<BuildPrimitive> {
+    bounds.map(|bounds| BuildPrimitive::item(PrimitiveRef { geometry: INSTANCE, primitive: index }, bounds))
+}
+
+/// Builds the hierarchy of one group; the world has instances in these boxes.
+pub(crate) fn build_group(
+    entities: &[Entity],
+    entity_groups: &[u32],
+    group: u32,
+    instance_bounds: impl Iterator<Item = Option<Bounds3>>,
+) -> Bvh {
+    let (mut primitives, source) = collect(entities, entity_groups, group as usize + 1, |own| own == group);
+    let mut own = primitives.swap_remove(group as usize);
+    own.extend((0..).zip(instance_bounds).filter_map(|(index, bounds)| instance_primitive(index, bounds)));
+    bvh::build(own, &source)
 }
 
 /// All triangles, for the hierarchies.

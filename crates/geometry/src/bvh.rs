@@ -12,6 +12,7 @@ mod lanes;
 mod node;
 mod pair;
 mod ray;
+mod refit;
 mod traverse;
 mod triangle_block;
 #[cfg(target_arch = "x86_64")]

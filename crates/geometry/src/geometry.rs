@@ -14,10 +14,10 @@ use crate::shape::entity::Entity;
 pub struct Geometry {
     pub(crate) entities: Vec<Entity>,
     /// Group of each entity.
-    entity_groups: Vec<u32>,
+    pub(crate) entity_groups: Vec<u32>,
     /// Hierarchy of the world, then of each object.
     pub(crate) groups: Vec<Bvh>,
-    instances: Vec<Instance>,
+    pub(crate) instances: Vec<Instance>,
     kernel: Kernel,
 }
 

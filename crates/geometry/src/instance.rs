@@ -52,11 +52,17 @@ impl Instance {
     }
 
     /// The box of the group at all times, with room for rounding; `None` if there is nothing to hit.
-    pub(crate) fn world_bounds(world_from_object: &AnimatedTransform, bounds: Bounds3) -> Option<Bounds3> {
+    pub(crate) fn world_bounds(&self, bounds: Bounds3) -> Option<Bounds3> {
         if bounds.is_empty() {
             return None;
         }
-        let bounds = world_from_object.motion_bounds(bounds);
+        let bounds = match &self.place {
+            Place::Still(maps) => {
+                let place = |p| double::to_point(maps.world_from_group.transform_point3(double::point(p)));
+                Bounds3::from_points(bounds.corners().map(place))
+            }
+            Place::Moving(motion) => motion.ends().motion_bounds(bounds),
+        };
         let largest = bounds.min.abs().max(bounds.max.abs());
         let margin = largest.as_vector() * (4.0 * f32::EPSILON) + Vector3::splat(f32::MIN_POSITIVE);
         let bounds = Bounds3 { min: bounds.min - margin, max: bounds.max + margin };

@@ -14,6 +14,7 @@ mod builder;
 mod geometry;
 mod instance;
 mod light_sampling;
+mod refit;
 mod subdivision;
 
 mod bvh;
@@ -28,5 +29,6 @@ pub use hit::{
     GeometryId, Hit, NO_INSTANCE, ObjectId, Reference, ShapeSample, SurfaceDerivatives, SurfacePoint,
 };
 pub use mesh::{BilinearMesh, MeshError, TriangleMesh};
+pub use refit::MovedVertices;
 pub use shape::Shape;
 pub use subdivision::loop_subdivide;

@@ -167,7 +167,8 @@ fn check_length(array: &'static str, found: usize, expected: usize) -> Result<()
     Err(MeshError::WrongLength { array, found, expected })
 }
 
-fn check_vertices<T>(
+/// Checks the length of an array per vertex, if it is there, and that its numbers are finite.
+pub(crate) fn check_vertices<T>(
     array: &'static str,
     values: &[T],
     n_vertices: usize,

@@ -298,6 +298,12 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// What was decomposed.
+    #[must_use]
+    pub const fn ends(&self) -> &AnimatedTransform {
+        &self.ends
+    }
+
     /// The transform at a time in seconds.
     #[must_use]
     pub fn at(&self, time: f32) -> Transform {

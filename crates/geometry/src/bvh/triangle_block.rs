@@ -74,7 +74,6 @@ impl TriangleBlock {
     }
 
     /// The triangles in a place.
-    #[cfg(test)]
     pub(super) fn pair(&self, place: usize) -> Option<Pair> {
         let exists = |primitive: &u32| *primitive != u32::MAX;
         let first = self.reference(place);

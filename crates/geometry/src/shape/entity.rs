@@ -1,5 +1,7 @@
 //! A shape in the space of its group, ready for intersection: one `match` per operation.
 
+use rayon::prelude::*;
+
 use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray, Transform, Vector3};
 
 use super::cylinder::Cylinder;
@@ -13,6 +15,7 @@ use crate::bvh::{BuildPrimitive, PrimitiveRef, append_pairs, intersect_triangle}
 use crate::double;
 use crate::geometry::GeometryCounts;
 use crate::hit::{Reference, ShapeSample, SurfacePoint};
+use crate::mesh::{MeshError, check_vertices};
 use glam::DVec3;
 
 /// A placed shape.
@@ -57,7 +60,7 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => {
                 let mesh = triangles.mesh();
-                let corners = |t: u32| triangles.is_valid(t).then(|| self.triangle(t));
+                let corners = |t: u32| self.valid_triangle(t);
                 return append_pairs(geometry, &mesh.indices, mesh.positions.len(), corners, primitives);
             }
             Self::Patches(patches) => primitives.extend(
@@ -80,6 +83,45 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.positions(triangle).map(|p| [p.x, p.y, p.z]),
             Self::Patches(_) | Self::Quadric(_) => [[f32::NAN; 3]; 3],
+        }
+    }
+
+    /// Corners of a triangle that can be hit.
+    #[inline]
+    pub(crate) fn valid_triangle(&self, triangle: u32) -> Option<[[f32; 3]; 3]> {
+        match self {
+            Self::Triangles(triangles) => triangles.is_valid(triangle).then(|| self.triangle(triangle)),
+            Self::Patches(_) | Self::Quadric(_) => None,
+        }
+    }
+
+    /// Number of triangles that can be hit.
+    pub(crate) fn n_valid_triangles(&self) -> usize {
+        match self {
+            Self::Triangles(_) => {
+                (0..self.n_primitives()).into_par_iter().filter(|&t| self.valid_triangle(t).is_some()).count()
+            }
+            Self::Patches(_) | Self::Quadric(_) => 0,
+        }
+    }
+
+    /// Checks what [`set_vertices`](Self::set_vertices) is about to take.
+    pub(crate) fn check_vertices(&self, positions: &[Point3], normals: &[Normal3]) -> Result<(), MeshError> {
+        let expected = match self {
+            Self::Triangles(triangles) => triangles.mesh().positions.len(),
+            Self::Patches(_) | Self::Quadric(_) => 0,
+        };
+        if positions.len() != expected {
+            return Err(MeshError::WrongLength { array: "positions", found: positions.len(), expected });
+        }
+        check_vertices("positions", positions, expected, |p| p.is_finite())?;
+        check_vertices("normals", normals, expected, |n| n.is_finite())
+    }
+
+    /// Moves the vertices of a triangle mesh. No normals leave those there are.
+    pub(crate) fn set_vertices(&mut self, positions: Vec<Point3>, normals: Vec<Normal3>) {
+        if let Self::Triangles(triangles) = self {
+            triangles.set_vertices(positions, normals);
         }
     }
 

@@ -49,14 +49,18 @@ impl Triangles {
                 *n = -*n;
             }
         }
-        let size = mesh
-            .positions
-            .iter()
-            .map(|p| p.abs().max_element())
-            .filter(|x| x.is_finite())
-            .fold(0.0, f32::max);
         let flips = reverse_orientation ^ group_from_shape.swaps_handedness();
-        Self { mesh, flips, size: size.into() }
+        let size = largest_coordinate(&mesh.positions);
+        Self { mesh, flips, size }
+    }
+
+    /// Moves the vertices; no normals leave those there are.
+    pub(crate) fn set_vertices(&mut self, positions: Vec<Point3>, normals: Vec<Normal3>) {
+        self.size = largest_coordinate(&positions);
+        self.mesh.positions = positions;
+        if !normals.is_empty() {
+            self.mesh.normals = normals;
+        }
     }
 
     pub(crate) const fn mesh(&self) -> &TriangleMesh {
@@ -255,6 +259,10 @@ impl Triangles {
     pub(crate) fn solid_angle_pdf(&self, triangle: u32, p: Point3) -> Option<f32> {
         self.spherical(triangle, p).map(|spherical| spherical.pdf_w())
     }
+}
+
+fn largest_coordinate(points: &[Point3]) -> f64 {
+    points.iter().map(|p| p.abs().max_element()).filter(|x| x.is_finite()).fold(0.0, f32::max).into()
 }
 
 /// The point with barycentric weights b1 and b2.

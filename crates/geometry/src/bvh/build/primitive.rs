@@ -15,6 +15,25 @@ pub(crate) struct Box3 {
     pub(crate) max: [f32; 3],
 }
 
+impl Box3 {
+    pub(crate) const EMPTY: Self = Self { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
+
+    /// The box around both.
+    pub(crate) fn union(self, other: &Self) -> Self {
+        Self {
+            min: std::array::from_fn(|axis| self.min[axis].min(other.min[axis])),
+            max: std::array::from_fn(|axis| self.max[axis].max(other.max[axis])),
+        }
+    }
+}
+
+impl From<Bounds3> for Box3 {
+    fn from(bounds: Bounds3) -> Self {
+        let [min, max] = [bounds.min, bounds.max].map(|p| [p.x, p.y, p.z]);
+        Self { min, max }
+    }
+}
+
 /// A box whose corners are four numbers wide; the fourth mean nothing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Box4 {
