@@ -20,6 +20,8 @@ mod subdivision;
 mod bvh;
 mod double;
 
+pub mod points;
+
 #[cfg(test)]
 mod test_support;
 
