@@ -15,16 +15,19 @@ pub(crate) enum Kind {
     Robust,
     /// Étendue as it is
     Etendue,
+    /// Étendue without the instructions that only some processors have
+    Portable,
 }
 
 impl Kind {
-    pub(crate) const ALL: [Self; 3] = [Self::Embree, Self::Robust, Self::Etendue];
+    pub(crate) const ALL: [Self; 4] = [Self::Embree, Self::Robust, Self::Etendue, Self::Portable];
 
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Embree => "Embree",
             Self::Robust => "Embree robust",
             Self::Etendue => "Étendue",
+            Self::Portable => "portable",
         }
     }
 }
@@ -41,13 +44,15 @@ impl<'a> Builder<'a> {
     /// Builds one, and tells its bytes and the processor seconds of all threads.
     pub(crate) fn build(&self, kind: Kind) -> (Contestant<'a>, f64) {
         let model = self.model.clone();
+        let build = || model.into_builder().build();
         // Threads of the last build come to rest.
         std::thread::sleep(std::time::Duration::from_millis(50));
         let start = crate::clock::process_seconds();
         let contestant = match kind {
             Kind::Embree => Contestant::Embree(embree::Scene::build(self.device, self.buffers, false)),
             Kind::Robust => Contestant::Embree(embree::Scene::build(self.device, self.buffers, true)),
-            Kind::Etendue => Contestant::Etendue(self.pool.install(|| model.into_builder().build())),
+            Kind::Etendue => Contestant::Etendue(self.pool.install(build)),
+            Kind::Portable => Contestant::Etendue(self.pool.install(build).traced_portably()),
         };
         (contestant, crate::clock::process_seconds() - start)
     }
