@@ -23,7 +23,7 @@ mod tests;
 
 pub(crate) use build::{BuildPrimitive, TriangleSource, build};
 pub(crate) use pair::{append_pairs, second_of};
-pub(crate) use ray::TraversalRay;
+use ray::TraversalRay;
 
 use etendue_math::{Bounds3, Ray};
 use node::{INNER, ITEMS, Node, TRIANGLES, leaf_range};
@@ -133,7 +133,7 @@ impl Kernel {
 
     /// Shows the visitor every primitive of the tree that the ray may hit with t in (0, `t_max`], near ones first.
     #[inline(always)]
-    pub(crate) fn traverse(self, bvh: &Bvh, ray: &TraversalRay, t_max: f32, visitor: &mut impl Visitor) {
+    pub(crate) fn traverse(self, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {
         #[cfg(target_arch = "x86_64")]
         if let Some(lanes) = self.avx2 {
             lanes.traverse(bvh, ray, t_max, visitor);
@@ -144,7 +144,7 @@ impl Kernel {
 }
 
 #[inline(never)]
-fn traverse_portably(bvh: &Bvh, ray: &TraversalRay, t_max: f32, visitor: &mut impl Visitor) {
+fn traverse_portably(bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {
     traverse::traverse(lanes::Portable, bvh, ray, t_max, visitor);
 }
 

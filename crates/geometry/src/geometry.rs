@@ -3,7 +3,7 @@
 use etendue_math::{Bounds3, Point2, Ray};
 
 use crate::builder::WORLD;
-use crate::bvh::{Bvh, INSTANCE, Kernel, PrimitiveRef, TraversalRay, Verdict, Visitor};
+use crate::bvh::{Bvh, INSTANCE, Kernel, PrimitiveRef, Verdict, Visitor};
 use crate::hit::{GeometryId, Hit, NO_INSTANCE, SurfaceDerivatives, SurfacePoint};
 use crate::instance::Instance;
 use crate::mesh::heap;
@@ -62,7 +62,7 @@ impl Geometry {
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32, filter: &impl Fn(&Hit) -> bool) -> Option<Hit> {
         let mut search =
-            Search::<_, false> { geometry: self, ray: *ray, instance: NO_INSTANCE, filter, best: None };
+            Search::<_, false> { geometry: self, ray, instance: NO_INSTANCE, filter, best: None };
         search.run(WORLD, t_max.next_down());
         search.best
     }
@@ -70,8 +70,7 @@ impl Geometry {
     /// True if any accepted hit has t in (0, `t_max`).
     #[inline]
     pub fn occluded(&self, ray: &Ray, t_max: f32, filter: &impl Fn(&Hit) -> bool) -> bool {
-        let mut search =
-            Search::<_, true> { geometry: self, ray: *ray, instance: NO_INSTANCE, filter, best: None };
+        let mut search = Search::<_, true> { geometry: self, ray, instance: NO_INSTANCE, filter, best: None };
         search.run(WORLD, t_max.next_down());
         search.best.is_some()
     }
@@ -159,7 +158,7 @@ impl Geometry {
 struct Search<'a, F, const ANY: bool> {
     geometry: &'a Geometry,
     /// The ray in the space of the group that is searched.
-    ray: Ray,
+    ray: &'a Ray,
     instance: u32,
     filter: &'a F,
     best: Option<Hit>,
@@ -170,9 +169,7 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Search<'_, F, ANY> {
     #[inline]
     fn run(&mut self, group: u32, t_max: f32) {
         let bvh = &self.geometry.groups[group as usize];
-        if let Some(prepared) = TraversalRay::new(&self.ray, &bvh.bounds()) {
-            self.geometry.kernel.traverse(bvh, &prepared, t_max, self);
-        }
+        self.geometry.kernel.traverse(bvh, self.ray, t_max, self);
     }
 
     #[inline]
@@ -208,7 +205,7 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Search<'_, F, ANY> {
         let instance = &self.geometry.instances[index as usize];
         let mut inner = Search::<_, ANY> {
             geometry: self.geometry,
-            ray: instance.group_ray(&self.ray),
+            ray: &instance.group_ray(self.ray),
             instance: index,
             filter: self.filter,
             best: None,
@@ -235,7 +232,7 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Visitor for Search<'_, F, ANY> {
             return self.enter(item.primitive, t_max);
         }
         let entity = &self.geometry.entities[item.geometry as usize];
-        for candidate in entity.intersect(item.primitive, &self.ray).into_iter().flatten() {
+        for candidate in entity.intersect(item.primitive, self.ray).into_iter().flatten() {
             let t = candidate.t as f32;
             if t <= 0.0 || t > t_max {
                 continue;

@@ -21,6 +21,8 @@ pub(super) trait Lanes: Copy {
     fn node(self, bvh: &Bvh, node: u32) -> &Node;
     /// The triangles of a leaf of the tree.
     fn blocks(self, bvh: &Bvh, leaf: u32) -> &[TriangleBlock];
+    /// A row that a prepared ray names.
+    fn row<const N: usize>(self, rows: &[[f32; 8]; N], row: usize) -> &[f32; 8];
 
     fn splat(self, x: f32) -> Self::Floats;
     fn load(self, row: &[f32; 8]) -> Self::Floats;
@@ -63,6 +65,11 @@ impl Lanes for Portable {
     #[inline(always)]
     fn blocks(self, bvh: &Bvh, leaf: u32) -> &[TriangleBlock] {
         &bvh.blocks[leaf_range(leaf)]
+    }
+
+    #[inline(always)]
+    fn row<const N: usize>(self, rows: &[[f32; 8]; N], row: usize) -> &[f32; 8] {
+        &rows[row]
     }
 
     #[inline(always)]

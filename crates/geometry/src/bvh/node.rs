@@ -82,7 +82,7 @@ impl Node {
     /// The comparisons let NaN lose: 0 * infinity arises where a ray runs within a plane, and such a plane bounds
     /// nothing.
     #[inline(always)]
-    pub(super) fn test<L: Lanes>(&self, lanes: L, ray: &SlabRay<L>, far: L::Floats) -> (u32, L::Floats) {
+    pub(super) fn test<L: Lanes>(&self, lanes: L, ray: &TraversalRay, far: L::Floats) -> (u32, L::Floats) {
         let zero = lanes.splat(0.0);
         let [ex, ey, ez] = [self.enter(lanes, ray, 0), self.enter(lanes, ray, 1), self.enter(lanes, ray, 2)];
         let [lx, ly, lz] = [self.leave(lanes, ray, 0), self.leave(lanes, ray, 1), self.leave(lanes, ray, 2)];
@@ -92,43 +92,14 @@ impl Node {
     }
 
     #[inline(always)]
-    fn enter<L: Lanes>(&self, lanes: L, ray: &SlabRay<L>, axis: usize) -> L::Floats {
-        let plane = lanes.load(&self.planes[ray.near_plane[axis]]);
-        lanes.mul(lanes.sub(plane, ray.near_origin[axis]), ray.inverse[axis])
+    fn enter<L: Lanes>(&self, lanes: L, ray: &TraversalRay, axis: usize) -> L::Floats {
+        let plane = lanes.load(lanes.row(&self.planes, ray.near_plane[axis]));
+        lanes.mul(lanes.sub(plane, lanes.splat(ray.near_origin[axis])), lanes.splat(ray.inverse[axis]))
     }
 
     #[inline(always)]
-    fn leave<L: Lanes>(&self, lanes: L, ray: &SlabRay<L>, axis: usize) -> L::Floats {
-        let plane = lanes.load(&self.planes[ray.far_plane[axis]]);
-        lanes.mul(lanes.sub(plane, ray.far_origin[axis]), ray.inverse_far[axis])
+    fn leave<L: Lanes>(&self, lanes: L, ray: &TraversalRay, axis: usize) -> L::Floats {
+        let plane = lanes.load(lanes.row(&self.planes, ray.far_plane[axis]));
+        lanes.mul(lanes.sub(plane, lanes.splat(ray.far_origin[axis])), lanes.splat(ray.inverse_far[axis]))
     }
-}
-
-/// What the test of boxes needs of a ray, eightfold.
-pub(super) struct SlabRay<L: Lanes> {
-    near_origin: [L::Floats; 3],
-    far_origin: [L::Floats; 3],
-    inverse: [L::Floats; 3],
-    inverse_far: [L::Floats; 3],
-    near_plane: [usize; 3],
-    far_plane: [usize; 3],
-}
-
-impl<L: Lanes> SlabRay<L> {
-    #[inline(always)]
-    pub(super) fn new(lanes: L, ray: &TraversalRay) -> Self {
-        Self {
-            near_origin: splats(lanes, ray.near_origin),
-            far_origin: splats(lanes, ray.far_origin),
-            inverse: splats(lanes, ray.inverse),
-            inverse_far: splats(lanes, ray.inverse_far),
-            near_plane: ray.near_plane,
-            far_plane: ray.far_plane,
-        }
-    }
-}
-
-#[inline(always)]
-fn splats<L: Lanes>(lanes: L, [x, y, z]: [f32; 3]) -> [L::Floats; 3] {
-    [lanes.splat(x), lanes.splat(y), lanes.splat(z)]
 }

@@ -6,18 +6,19 @@
 //! (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", JCGT 2(1), section 4).
 
 use etendue_math::{Bounds3, Ray};
+use glam::Vec4;
 
 /// A ray made ready for slab tests and triangle tests.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TraversalRay {
-    pub(super) origin: [f32; 3],
-    pub(super) direction: [f32; 3],
+    pub(super) origin: [f32; 4],
+    pub(super) direction: [f32; 4],
     /// Reciprocal direction; infinite where the direction is 0.
-    pub(super) inverse: [f32; 3],
-    /// The same for the planes where the ray leaves.
-    pub(super) inverse_far: [f32; 3],
-    pub(super) near_origin: [f32; 3],
-    pub(super) far_origin: [f32; 3],
+    pub(super) inverse: [f32; 4],
+    /// The same for the planes where the ray leaves, widened.
+    pub(super) inverse_far: [f32; 4],
+    pub(super) near_origin: [f32; 4],
+    pub(super) far_origin: [f32; 4],
     /// Which of the six planes of a box the ray enters through, per axis.
     pub(super) near_plane: [usize; 3],
     /// Which it leaves through.
@@ -42,40 +43,41 @@ impl TraversalRay {
     /// Prepares a ray for a tree with these bounds; `None` for rays that are not finite or have no direction.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray, bounds: &Bounds3) -> Option<Self> {
-        if !ray.origin.is_finite() || !ray.direction.is_finite() {
+        let origin = Vec4::new(ray.origin.x, ray.origin.y, ray.origin.z, 0.0);
+        let direction = Vec4::new(ray.direction.x, ray.direction.y, ray.direction.z, 0.0);
+        let low = Vec4::new(bounds.min.x, bounds.min.y, bounds.min.z, 0.0);
+        let high = Vec4::new(bounds.max.x, bounds.max.y, bounds.max.z, 0.0);
+        let reach = (high - origin).abs().max((low - origin).abs()).max_element();
+        let step = Vec4::splat(5.0 * f32::EPSILON * reach).copysign(direction);
+        let inverse = Vec4::ONE / direction;
+        let signs = direction.is_negative_bitmask() as usize;
+        let near_plane = [(signs & 1) * 3, 1 + (signs >> 1 & 1) * 3, 2 + (signs >> 2 & 1) * 3];
+        let d = direction.to_array();
+        let axes = axes_by_length(direction.abs().to_array());
+        let [x, y, z] = axes;
+        let scale = 1.0 / d[z];
+        if !origin.is_finite() || !direction.is_finite() || d[z] == 0.0 {
             return None;
         }
-        let origin = [ray.origin.x, ray.origin.y, ray.origin.z];
-        let direction = [ray.direction.x, ray.direction.y, ray.direction.z];
-        let z = ray.direction.max_dimension();
-        if direction[z] == 0.0 {
-            return None;
-        }
-        let reach = (bounds.max - ray.origin).abs().max((bounds.min - ray.origin).abs()).max_element();
-        let margin = 5.0 * f32::EPSILON * reach;
-        let [sx, sy, sz] =
-            [step(direction[0], margin), step(direction[1], margin), step(direction[2], margin)];
-        let inverse = [1.0 / direction[0], 1.0 / direction[1], 1.0 / direction[2]];
-        let near_plane = |axis: usize| if direction[axis].is_sign_negative() { axis + 3 } else { axis };
-        let near_plane = [near_plane(0), near_plane(1), near_plane(2)];
-        let (x, y) = ([1, 2, 0][z], [2, 0, 1][z]);
-        let scale = inverse[z];
         Some(Self {
-            origin,
-            direction,
-            inverse,
-            inverse_far: [inverse[0] * Self::WIDEN, inverse[1] * Self::WIDEN, inverse[2] * Self::WIDEN],
-            near_origin: [origin[0] + sx, origin[1] + sy, origin[2] + sz],
-            far_origin: [origin[0] - sx, origin[1] - sy, origin[2] - sz],
+            origin: origin.to_array(),
+            direction: d,
+            inverse: inverse.to_array(),
+            inverse_far: (inverse * Self::WIDEN).to_array(),
+            near_origin: (origin + step).to_array(),
+            far_origin: (origin - step).to_array(),
             near_plane,
             far_plane: [3 - near_plane[0], 5 - near_plane[1], 7 - near_plane[2]],
-            shear: Shear { axes: [x, y, z], x: -direction[x] * scale, y: -direction[y] * scale, z: scale },
+            shear: Shear { axes, x: -d[x] * scale, y: -d[y] * scale, z: scale },
         })
     }
 }
 
-/// The margin in the sense of a direction.
+/// The longest axis last, the others in cyclic order. Without branches, which random directions would defeat.
 #[inline(always)]
-const fn step(direction: f32, margin: f32) -> f32 {
-    if direction.is_sign_negative() { -margin } else { margin }
+fn axes_by_length([x, y, z, _]: [f32; 4]) -> [usize; 3] {
+    const CYCLES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
+    let y_exceeds_x = usize::from(y >= x);
+    let longer = if y >= x { y } else { x };
+    CYCLES[y_exceeds_x | usize::from(z >= longer) << 1]
 }

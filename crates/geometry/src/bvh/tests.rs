@@ -2,7 +2,7 @@ use etendue_math::{Bounds3, Point3, Ray, Rng, Vector3, offset_ray_origin};
 
 use super::build::Box3;
 use super::lanes::{Lanes, Portable};
-use super::node::{Node, SlabRay, leaf, leaf_range};
+use super::node::{Node, leaf, leaf_range};
 use super::{TraversalRay, intersect_triangle};
 use crate::test_support::{any, ball, brute_force, cube, direction, point_in_cube, ray, single, soup};
 use crate::{Hit, Shape, TriangleMesh};
@@ -14,7 +14,7 @@ fn slab(min: [f32; 3], max: [f32; 3], ray: &Ray, t_max: f32) -> bool {
     let bounds =
         Bounds3 { min: Point3::new(min[0], min[1], min[2]), max: Point3::new(max[0], max[1], max[2]) };
     let prepared = TraversalRay::new(ray, &bounds).expect("the ray is finite");
-    node.test(Portable, &SlabRay::new(Portable, &prepared), Portable.splat(t_max)).0 == 1 << 3
+    node.test(Portable, &prepared, Portable.splat(t_max)).0 == 1 << 3
 }
 
 /// SPEC ACC-7: a box is met exactly where three slabs overlap, also for directions along an axis.

@@ -4,31 +4,28 @@
 //! comes. Everything here is inlined into functions that are compiled for one instruction set each.
 
 use super::lanes::{Lanes, Stack};
-use super::node::{EMPTY, INNER, ITEMS, Node, SlabRay, TRIANGLES, leaf_range};
+use super::node::{EMPTY, INNER, ITEMS, Node, TRIANGLES, leaf_range};
+use super::triangle_block::Hits;
 use super::{Bvh, TraversalRay, Verdict, Visitor};
+use etendue_math::Ray;
 
 /// No descent stacks more entries: seven for each level of a tree as deep as `build.rs` lets it become.
 pub(super) const MAX_STACK: usize = 400;
 
 /// See [`super::Kernel::traverse`].
 #[inline(always)]
-pub(super) fn traverse<L: Lanes>(
-    lanes: L,
-    bvh: &Bvh,
-    ray: &TraversalRay,
-    t_max: f32,
-    visitor: &mut impl Visitor,
-) {
+pub(super) fn traverse<L: Lanes>(lanes: L, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {
     if bvh.nodes.is_empty() {
         return;
     }
-    let slabs = SlabRay::new(lanes, ray);
+    let Some(ray) = TraversalRay::new(ray, &bvh.bounds) else { return };
+    let ray = &ray;
     let mut end = t_max;
     let mut stack = L::Stack::new();
     let mut current = 0;
     loop {
         let descended = match current >> 30 {
-            INNER => descend(lanes, lanes.node(bvh, current), &slabs, end, &mut stack),
+            INNER => descend(lanes, lanes.node(bvh, current), ray, end, &mut stack),
             TRIANGLES => {
                 if !visit_triangles(lanes, bvh, current, ray, &mut end, visitor) {
                     return;
@@ -55,8 +52,8 @@ pub(super) fn traverse<L: Lanes>(
 
 /// Tests the children of a node; returns the nearest and stacks the others, the farthest lowest.
 #[inline(always)]
-fn descend<L: Lanes>(lanes: L, node: &Node, slabs: &SlabRay<L>, end: f32, stack: &mut L::Stack) -> u32 {
-    let (mask, near) = node.test(lanes, slabs, lanes.splat(end * TraversalRay::WIDEN));
+fn descend<L: Lanes>(lanes: L, node: &Node, ray: &TraversalRay, end: f32, stack: &mut L::Stack) -> u32 {
+    let (mask, near) = node.test(lanes, ray, lanes.splat(end * TraversalRay::WIDEN));
     if mask == 0 {
         return EMPTY;
     }
@@ -111,8 +108,9 @@ fn visit_triangles<L: Lanes>(
     end: &mut f32,
     visitor: &mut impl Visitor,
 ) -> bool {
+    let mut hits = Hits::NONE;
     for block in lanes.blocks(bvh, leaf) {
-        let (mut mask, hits) = block.intersect(lanes, ray, *end);
+        let mut mask = block.intersect(lanes, ray, *end, &mut hits);
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize & 7;
             mask &= mask - 1;

@@ -89,14 +89,20 @@ impl TriangleBlock {
 
     /// Which triangles the ray hits with t in (0, `t_max`], one bit each, and where.
     #[inline(always)]
-    pub(super) fn intersect<L: Lanes>(&self, lanes: L, ray: &TraversalRay, t_max: f32) -> (u32, Hits) {
+    pub(super) fn intersect<L: Lanes>(
+        &self,
+        lanes: L,
+        ray: &TraversalRay,
+        t_max: f32,
+        hits: &mut Hits,
+    ) -> u32 {
         let a = shear_rows(lanes, &self.shared, ray);
         let b = shear_rows(lanes, &self.apart, ray);
         let c = [lanes.swap_halves(a[0]), lanes.swap_halves(a[1]), lanes.swap_halves(a[2])];
         let mut edges = [edge_rows(lanes, b, c), edge_rows(lanes, c, a), edge_rows(lanes, a, b)];
         let mut mask = have_one_sign(lanes, edges);
         if mask == 0 {
-            return (0, Hits::NONE);
+            return 0;
         }
         let sizes = [lanes.abs(edges[0]), lanes.abs(edges[1]), lanes.abs(edges[2])];
         let zeros = lanes.at_most(lanes.min(lanes.min(sizes[0], sizes[1]), sizes[2]), lanes.splat(0.0));
@@ -106,25 +112,42 @@ impl TriangleBlock {
             edges = [lanes.load(&decided[0]), lanes.load(&decided[1]), lanes.load(&decided[2])];
             mask &= have_one_sign(lanes, edges);
         }
-        let determinant = ordered_sum(lanes, edges);
-        let inverse = lanes.div(lanes.splat(1.0), determinant);
-        let heights = [lanes.mul(edges[0], a[2]), lanes.mul(edges[1], b[2]), lanes.mul(edges[2], c[2])];
-        let t = lanes.mul(lanes.mul(ordered_sum(lanes, heights), lanes.splat(ray.shear.z)), inverse);
+        // t is a mean of the scaled heights: it is positive where all of them are, and negative likewise.
+        let scale = lanes.splat(ray.shear.z);
+        let heights = [lanes.mul(a[2], scale), lanes.mul(b[2], scale), lanes.mul(c[2], scale)];
+        let highest = lanes.max(lanes.max(heights[0], heights[1]), heights[2]);
+        mask &= !lanes.at_most(highest, lanes.splat(0.0));
+        if mask == 0 {
+            return 0;
+        }
+        let inverse = lanes.div(lanes.splat(1.0), ordered_sum(lanes, edges));
+        let products = [
+            lanes.mul(edges[0], heights[0]),
+            lanes.mul(edges[1], heights[1]),
+            lanes.mul(edges[2], heights[2]),
+        ];
+        let t = lanes.mul(ordered_sum(lanes, products), inverse);
         // NaN, where all edge functions are 0, is lost here.
         mask &= lanes.at_most(t, lanes.splat(t_max));
         if mask == 0 {
-            return (0, Hits::NONE);
+            return 0;
         }
-        let error = t_error(lanes, [a, b, c], edges, ray.shear.z);
-        let error = lanes.mul(error, lanes.abs(inverse));
-        let mut t = lanes.store(t);
-        let unsure = mask & lanes.at_most(lanes.abs(lanes.load(&t)), error);
-        if unsure != 0 {
-            self.decide_t(unsure, ray, &mut t);
+        let lowest = lanes.min(lanes.min(heights[0], heights[1]), heights[2]);
+        let edges_stored = [lanes.store(edges[0]), lanes.store(edges[1]), lanes.store(edges[2])];
+        hits.t = lanes.store(t);
+        hits.edges = edges_stored;
+        hits.inverse = lanes.store(inverse);
+        let mixed = mask & lanes.at_most(lowest, lanes.splat(0.0));
+        if mixed != 0 {
+            let highest = largest(lanes, heights);
+            let error = t_error(lanes, [a, b, c], edges, highest);
+            let unsure = mixed & lanes.at_most(lanes.abs(t), lanes.mul(error, lanes.abs(inverse)));
+            if unsure != 0 {
+                self.decide_t(unsure, ray, &mut hits.t);
+            }
+            mask &= !lanes.at_most(lanes.load(&hits.t), lanes.splat(0.0));
         }
-        mask &= !lanes.at_most(lanes.load(&t), lanes.splat(0.0));
-        let edges = [lanes.store(edges[0]), lanes.store(edges[1]), lanes.store(edges[2])];
-        (mask, Hits { t, edges, inverse: lanes.store(inverse) })
+        mask
     }
 
     /// The weights of the second and third vertex.
@@ -137,11 +160,8 @@ impl TriangleBlock {
     /// Which corners of a lane are the first, second and third in the mesh.
     #[inline(always)]
     const fn mesh_order(&self, lane: usize) -> [usize; 3] {
-        match self.first_corner[lane] {
-            0 => [0, 1, 2],
-            1 => [2, 0, 1],
-            _ => [1, 2, 0],
-        }
+        const ORDERS: [[usize; 3]; 4] = [[0, 1, 2], [2, 0, 1], [1, 2, 0], [0, 1, 2]];
+        ORDERS[self.first_corner[lane] as usize & 3]
     }
 
     /// Corners of a triangle in the order of the mesh.
@@ -186,14 +206,15 @@ pub(super) struct Hits {
 }
 
 impl Hits {
-    const NONE: Self = Self { t: [0.0; 8], edges: [[0.0; 8]; 3], inverse: [0.0; 8] };
+    pub(super) const NONE: Self = Self { t: [0.0; 8], edges: [[0.0; 8]; 3], inverse: [0.0; 8] };
 }
 
 /// The same test on a single triangle.
 pub(super) fn intersect(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> Option<TriangleHit> {
     let mut block = TriangleBlock::EMPTY;
     block.set_triangle(0, 0, corners, 0);
-    let (mask, hits) = block.intersect(Portable, ray, f32::MAX);
+    let mut hits = Hits::NONE;
+    let mask = block.intersect(Portable, ray, f32::MAX, &mut hits);
     (mask != 0).then(|| (hits.t[0], block.weights(0, &hits)))
 }
 
@@ -201,9 +222,9 @@ pub(super) fn intersect(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> Option<T
 #[inline(always)]
 fn shear_rows<L: Lanes>(lanes: L, rows: &[[f32; 8]; 3], ray: &TraversalRay) -> [L::Floats; 3] {
     let [kx, ky, kz] = ray.shear.axes;
-    let x = lanes.sub(lanes.load(&rows[kx]), lanes.splat(ray.origin[kx]));
-    let y = lanes.sub(lanes.load(&rows[ky]), lanes.splat(ray.origin[ky]));
-    let z = lanes.sub(lanes.load(&rows[kz]), lanes.splat(ray.origin[kz]));
+    let x = lanes.sub(lanes.load(lanes.row(rows, kx)), lanes.splat(ray.origin[kx]));
+    let y = lanes.sub(lanes.load(lanes.row(rows, ky)), lanes.splat(ray.origin[ky]));
+    let z = lanes.sub(lanes.load(lanes.row(rows, kz)), lanes.splat(ray.origin[kz]));
     [
         lanes.add(x, lanes.mul(lanes.splat(ray.shear.x), z)),
         lanes.add(y, lanes.mul(lanes.splat(ray.shear.y), z)),
@@ -248,11 +269,15 @@ fn shear(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> [[f32; 3]; 3] {
 fn t_in_double(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> f32 {
     let [a, b, c] = corners.map(|p| DVec3::from_array(p.map(f64::from)));
     let n = (b - a).cross(c - a);
-    let slope = n.dot(DVec3::from_array(ray.direction.map(f64::from)));
-    let height = n.dot(a - DVec3::from_array(ray.origin.map(f64::from)));
+    let slope = n.dot(double(&ray.direction));
+    let height = n.dot(a - double(&ray.origin));
     let t = if slope == 0.0 { 0.0 } else { height / slope };
     // A tiny value must not lose its sign.
     if t > 0.0 { (t as f32).max(f32::MIN_POSITIVE) } else { (t as f32).min(0.0) }
+}
+
+const fn double([x, y, z, _]: &[f32; 4]) -> DVec3 {
+    DVec3::new(*x as f64, *y as f64, *z as f64)
 }
 
 /// Edge functions in double precision, where products of single-precision numbers are exact.
@@ -278,20 +303,24 @@ const GAMMA_5: f32 = gamma(5);
 
 /// Bound of the error of t, times the sum of the edge functions (Pharr et al. 2023, section 6.8.7).
 #[inline(always)]
-fn t_error<L: Lanes>(lanes: L, corners: [[L::Floats; 3]; 3], edges: [L::Floats; 3], scale: f32) -> L::Floats {
+fn t_error<L: Lanes>(
+    lanes: L,
+    corners: [[L::Floats; 3]; 3],
+    edges: [L::Floats; 3],
+    max_height: L::Floats,
+) -> L::Floats {
     let max_x = largest(lanes, [corners[0][0], corners[1][0], corners[2][0]]);
     let max_y = largest(lanes, [corners[0][1], corners[1][1], corners[2][1]]);
     let max_z = largest(lanes, [corners[0][2], corners[1][2], corners[2][2]]);
     let max_e = largest(lanes, edges);
     let [gamma_2, gamma_3, gamma_5] = [lanes.splat(GAMMA_2), lanes.splat(GAMMA_3), lanes.splat(GAMMA_5)];
-    let max_z_scaled = lanes.mul(max_z, lanes.splat(scale.abs()));
-    let delta_z = lanes.mul(gamma_3, max_z_scaled);
+    let delta_z = lanes.mul(gamma_3, max_height);
     let delta_x = lanes.mul(gamma_5, lanes.add(max_x, max_z));
     let delta_y = lanes.mul(gamma_5, lanes.add(max_y, max_z));
     let of_products = lanes.mul(gamma_2, lanes.mul(max_x, max_y));
     let of_factors = lanes.add(lanes.mul(delta_y, max_x), lanes.mul(delta_x, max_y));
     let delta_e = lanes.mul(lanes.splat(2.0), lanes.add(of_products, of_factors));
-    let of_t = lanes.mul(lanes.add(lanes.mul(gamma_3, max_e), delta_e), max_z_scaled);
+    let of_t = lanes.mul(lanes.add(lanes.mul(gamma_3, max_e), delta_e), max_height);
     lanes.mul(lanes.splat(3.0), lanes.add(of_t, lanes.mul(delta_z, max_e)))
 }
 

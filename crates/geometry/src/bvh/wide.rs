@@ -13,7 +13,8 @@ use super::lanes::{Lanes, Stack};
 use super::node::{Node, leaf_range};
 use super::traverse::MAX_STACK;
 use super::triangle_block::TriangleBlock;
-use super::{Bvh, TraversalRay, Visitor, traverse};
+use super::{Bvh, Visitor, traverse};
+use etendue_math::Ray;
 use std::arch::x86_64::{
     __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_andnot_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_loadu_ps,
     _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_permute2f128_ps, _mm256_set1_ps,
@@ -38,7 +39,7 @@ impl Avx2 {
 
     /// See [`super::Kernel::traverse`].
     #[inline(always)]
-    pub(super) fn traverse(self, bvh: &Bvh, ray: &TraversalRay, t_max: f32, visitor: &mut impl Visitor) {
+    pub(super) fn traverse(self, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {
         // SAFETY: the instructions exist, see `Avx2`.
         unsafe { traverse_by_avx2(self, bvh, ray, t_max, visitor) }
     }
@@ -46,7 +47,7 @@ impl Avx2 {
 
 /// The generic traversal, compiled for AVX2: all that it calls is inlined here.
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-fn traverse_by_avx2(lanes: Avx2, bvh: &Bvh, ray: &TraversalRay, t_max: f32, visitor: &mut impl Visitor) {
+fn traverse_by_avx2(lanes: Avx2, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {
     traverse::traverse(lanes, bvh, ray, t_max, visitor);
 }
 
@@ -138,6 +139,13 @@ impl Lanes for Avx2 {
         debug_assert!(leaf_range(leaf).end <= bvh.blocks.len());
         // SAFETY: `Bvh::new` has checked every leaf.
         unsafe { bvh.blocks.get_unchecked(leaf_range(leaf)) }
+    }
+
+    #[inline(always)]
+    fn row<const N: usize>(self, rows: &[[f32; 8]; N], row: usize) -> &[f32; 8] {
+        debug_assert!(row < N);
+        // SAFETY: `TraversalRay::new` makes axes below 3 for blocks and planes below 6 for nodes.
+        unsafe { rows.get_unchecked(row) }
     }
 }
 
