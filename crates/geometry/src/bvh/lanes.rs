@@ -6,7 +6,8 @@
 use glam::Vec4;
 
 use super::Bvh;
-use super::node::{EMPTY, Node, leaf_range};
+use super::node::{Node, leaf_range};
+use super::traverse::{Entry, MAX_STACK};
 use super::triangle_block::TriangleBlock;
 
 /// Operations on eight floats. Values of the type are proof that the processor has the instructions.
@@ -42,11 +43,14 @@ pub(super) trait Lanes: Copy {
     fn swap_halves(self, a: Self::Floats) -> Self::Floats;
 }
 
-/// Nodes still to visit with the ray parameter where the ray enters them.
+/// Nodes still to visit.
 pub(super) trait Stack {
     fn new() -> Self;
-    fn push(&mut self, entry: (u32, f32));
-    fn pop(&mut self) -> Option<(u32, f32)>;
+    fn len(&self) -> usize;
+    fn pop(&mut self) -> Option<Entry>;
+    fn push(&mut self, entry: Entry);
+    /// Puts an entry among those from `start` on, which stand in falling order.
+    fn insert(&mut self, start: usize, entry: Entry);
 }
 
 /// Works everywhere: two vectors of four.
@@ -55,7 +59,7 @@ pub(super) struct Portable;
 
 impl Lanes for Portable {
     type Floats = [Vec4; 2];
-    type Stack = SpillingStack;
+    type Stack = CheckedStack;
 
     #[inline(always)]
     fn node(self, bvh: &Bvh, node: u32) -> &Node {
@@ -135,38 +139,43 @@ impl Lanes for Portable {
     }
 }
 
-/// Entries that need no allocation.
-const STACK_SIZE: usize = 64;
-
-/// A stack in an array, with more behind it for degenerate trees.
-pub(super) struct SpillingStack {
-    entries: [(u32, f32); STACK_SIZE],
+/// A stack whose every access is checked.
+pub(super) struct CheckedStack {
+    entries: [Entry; MAX_STACK],
     len: usize,
-    spill: Vec<(u32, f32)>,
 }
 
-impl Stack for SpillingStack {
+impl Stack for CheckedStack {
     #[inline(always)]
     fn new() -> Self {
-        Self { entries: [(EMPTY, 0.0); STACK_SIZE], len: 0, spill: Vec::new() }
+        Self { entries: [Entry::LAST; MAX_STACK], len: 0 }
     }
 
     #[inline(always)]
-    fn push(&mut self, entry: (u32, f32)) {
-        if let Some(slot) = self.entries.get_mut(self.len) {
-            *slot = entry;
-            self.len += 1;
-        } else {
-            self.spill.push(entry);
-        }
+    fn len(&self) -> usize {
+        self.len
     }
 
     #[inline(always)]
-    fn pop(&mut self) -> Option<(u32, f32)> {
-        if let Some(entry) = self.spill.pop() {
-            return Some(entry);
-        }
+    fn pop(&mut self) -> Option<Entry> {
         self.len = self.len.checked_sub(1)?;
-        Some(self.entries[self.len & (STACK_SIZE - 1)])
+        Some(self.entries[self.len])
+    }
+
+    #[inline(always)]
+    fn push(&mut self, entry: Entry) {
+        self.entries[self.len] = entry;
+        self.len += 1;
+    }
+
+    #[inline(always)]
+    fn insert(&mut self, start: usize, entry: Entry) {
+        let mut slot = self.len;
+        while slot > start && self.entries[slot - 1].is_before(entry) {
+            self.entries[slot] = self.entries[slot - 1];
+            slot -= 1;
+        }
+        self.entries[slot] = entry;
+        self.len += 1;
     }
 }

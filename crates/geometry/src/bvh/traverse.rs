@@ -12,6 +12,43 @@ use etendue_math::Ray;
 /// No descent stacks more entries: seven for each level of a tree as deep as `build.rs` lets it become.
 pub(super) const MAX_STACK: usize = 400;
 
+/// A node or leaf still to visit, behind the ray parameter where the ray enters it: bits of floats that are not negative
+/// order like the floats, and ties go to the child.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry(u64);
+
+impl Entry {
+    /// Behind all others.
+    pub(super) const LAST: Self = Self(u64::MAX);
+
+    #[inline(always)]
+    fn sorted(self, other: Self) -> (Self, Self) {
+        if self.0 <= other.0 { (self, other) } else { (other, self) }
+    }
+
+    #[inline(always)]
+    pub(super) const fn is_before(self, other: Self) -> bool {
+        self.0 < other.0
+    }
+
+    /// The first child of a mask.
+    #[inline(always)]
+    const fn of(node: &Node, near: &[f32; 8], mask: u32) -> Self {
+        let child = mask.trailing_zeros() as usize & 7;
+        Self((near[child].to_bits() as u64) << 32 | node.children[child] as u64)
+    }
+
+    #[inline(always)]
+    const fn child(self) -> u32 {
+        self.0 as u32
+    }
+
+    #[inline(always)]
+    const fn t(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+}
+
 /// See [`super::Kernel::traverse`].
 #[inline(always)]
 pub(super) fn traverse<L: Lanes>(lanes: L, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {
@@ -43,7 +80,7 @@ pub(super) fn traverse<L: Lanes>(lanes: L, bvh: &Bvh, ray: &Ray, t_max: f32, vis
         while current == EMPTY {
             match stack.pop() {
                 None => return,
-                Some((child, t)) if t <= end => current = child,
+                Some(entry) if entry.t() <= end => current = entry.child(),
                 Some(_) => {}
             }
         }
@@ -53,49 +90,31 @@ pub(super) fn traverse<L: Lanes>(lanes: L, bvh: &Bvh, ray: &Ray, t_max: f32, vis
 /// Tests the children of a node; returns the nearest and stacks the others, the farthest lowest.
 #[inline(always)]
 fn descend<L: Lanes>(lanes: L, node: &Node, ray: &TraversalRay, end: f32, stack: &mut L::Stack) -> u32 {
+    // Otherwise compilers broadcast the numbers of the ray before the loop, only to spill them.
+    let ray = std::hint::black_box(ray);
     let (mask, near) = node.test(lanes, ray, lanes.splat(end * TraversalRay::WIDEN));
     if mask == 0 {
         return EMPTY;
     }
     let near = lanes.store(near);
-    let (mut first, mask) = take(node, &near, mask);
-    if mask == 0 {
-        return first.0;
+    let first = Entry::of(node, &near, mask);
+    let mut rest = mask & (mask - 1);
+    if rest == 0 {
+        return first.child();
     }
-    let (mut second, mut mask) = take(node, &near, mask);
-    if second.1 < first.1 {
-        std::mem::swap(&mut first, &mut second);
+    let second = Entry::of(node, &near, rest);
+    let (mut first, second) = first.sorted(second);
+    rest &= rest - 1;
+    let start = stack.len();
+    stack.push(second);
+    while rest != 0 {
+        let entry = Entry::of(node, &near, rest);
+        rest &= rest - 1;
+        let (nearer, farther) = first.sorted(entry);
+        stack.insert(start, farther);
+        first = nearer;
     }
-    if mask == 0 {
-        stack.push(second);
-        return first.0;
-    }
-    let mut sorted = [(EMPTY, 0.0); 8];
-    sorted[0] = second;
-    sorted[1] = first;
-    let mut n = 2;
-    while mask != 0 {
-        let entry;
-        (entry, mask) = take(node, &near, mask);
-        let mut slot = n & 7;
-        while slot > 0 && sorted[slot - 1].1 < entry.1 {
-            sorted[slot] = sorted[slot - 1];
-            slot -= 1;
-        }
-        sorted[slot] = entry;
-        n += 1;
-    }
-    for entry in &sorted[..(n - 1) & 7] {
-        stack.push(*entry);
-    }
-    sorted[(n - 1) & 7].0
-}
-
-/// The first child of a mask, and the mask without it.
-#[inline(always)]
-const fn take(node: &Node, near: &[f32; 8], mask: u32) -> ((u32, f32), u32) {
-    let child = mask.trailing_zeros() as usize & 7;
-    ((node.children[child], near[child]), mask & (mask - 1))
+    first.child()
 }
 
 /// Tests the triangles of a leaf, which may bring the end of the ray nearer; false to stop.

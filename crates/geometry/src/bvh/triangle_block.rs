@@ -165,10 +165,17 @@ impl TriangleBlock {
     }
 
     /// Corners of a triangle in the order of the mesh.
+    #[inline(always)]
     fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
-        let point = |rows: &[[f32; 8]; 3], lane: usize| [rows[0][lane], rows[1][lane], rows[2][lane]];
-        let here = [point(&self.shared, lane), point(&self.apart, lane), point(&self.shared, lane ^ 4)];
-        self.mesh_order(lane).map(|corner| here[corner])
+        let [i, j, k] = self.mesh_order(lane);
+        [self.corner(lane, i), self.corner(lane, j), self.corner(lane, k)]
+    }
+
+    #[inline(always)]
+    fn corner(&self, lane: usize, corner: usize) -> [f32; 3] {
+        let rows = if corner == 1 { &self.apart } else { &self.shared };
+        let lane = if corner == 2 { lane ^ 4 } else { lane } & 7;
+        [rows[0][lane], rows[1][lane], rows[2][lane]]
     }
 
     /// Recomputes edge functions, of which some are 0, in double precision.
@@ -189,7 +196,10 @@ impl TriangleBlock {
     #[cold]
     #[inline(never)]
     fn decide_t(&self, mask: u32, ray: &TraversalRay, t: &mut [f32; 8]) {
-        for lane in (0..8).filter(|lane| mask >> lane & 1 != 0) {
+        let mut mask = mask;
+        while mask != 0 {
+            let lane = mask.trailing_zeros() as usize & 7;
+            mask &= mask - 1;
             t[lane] = t_in_double(ray, &self.corners(lane));
         }
     }
@@ -265,15 +275,16 @@ fn shear(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> [[f32; 3]; 3] {
     })
 }
 
-/// Where the ray meets the plane of a triangle; 0 if it runs parallel. Only the sign of tiny values matters.
+/// Where the ray meets the plane of a triangle; 0 if it does not.
+#[inline(always)]
 fn t_in_double(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> f32 {
     let [a, b, c] = corners.map(|p| DVec3::from_array(p.map(f64::from)));
     let n = (b - a).cross(c - a);
     let slope = n.dot(double(&ray.direction));
     let height = n.dot(a - double(&ray.origin));
-    let t = if slope == 0.0 { 0.0 } else { height / slope };
-    // A tiny value must not lose its sign.
-    if t > 0.0 { (t as f32).max(f32::MIN_POSITIVE) } else { (t as f32).min(0.0) }
+    let is_ahead = (height > 0.0 && slope > 0.0) || (height < 0.0 && slope < 0.0);
+    // A tiny value must not become 0.
+    if is_ahead { ((height / slope) as f32).max(f32::MIN_POSITIVE) } else { 0.0 }
 }
 
 const fn double([x, y, z, _]: &[f32; 4]) -> DVec3 {

@@ -11,7 +11,7 @@
 
 use super::lanes::{Lanes, Stack};
 use super::node::{Node, leaf_range};
-use super::traverse::MAX_STACK;
+use super::traverse::{Entry, MAX_STACK};
 use super::triangle_block::TriangleBlock;
 use super::{Bvh, Visitor, traverse};
 use etendue_math::Ray;
@@ -53,7 +53,7 @@ fn traverse_by_avx2(lanes: Avx2, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut
 
 impl Lanes for Avx2 {
     type Floats = __m256;
-    type Stack = UninitStack;
+    type Stack = UncheckedStack;
 
     #[inline(always)]
     fn splat(self, x: f32) -> __m256 {
@@ -150,29 +150,61 @@ impl Lanes for Avx2 {
 }
 
 /// A stack that is neither cleared nor checked.
-pub(super) struct UninitStack {
-    entries: [MaybeUninit<(u32, f32)>; MAX_STACK],
+pub(super) struct UncheckedStack {
+    entries: [MaybeUninit<Entry>; MAX_STACK],
     len: usize,
 }
 
-impl Stack for UninitStack {
+impl UncheckedStack {
+    #[inline(always)]
+    fn write(&mut self, slot: usize, entry: Entry) {
+        debug_assert!(slot < MAX_STACK);
+        // SAFETY: `Bvh::new` has checked that no descent stacks more entries than fit.
+        unsafe { self.entries.get_unchecked_mut(slot) }.write(entry);
+    }
+
+    #[inline(always)]
+    fn read(&self, slot: usize) -> Entry {
+        debug_assert!(slot < self.len);
+        // SAFETY: all entries below the length have been written.
+        unsafe { self.entries.get_unchecked(slot).assume_init() }
+    }
+}
+
+impl Stack for UncheckedStack {
     #[inline(always)]
     fn new() -> Self {
         Self { entries: [const { MaybeUninit::uninit() }; MAX_STACK], len: 0 }
     }
 
     #[inline(always)]
-    fn push(&mut self, entry: (u32, f32)) {
-        debug_assert!(self.len < MAX_STACK);
-        // SAFETY: `Bvh::new` has checked that no descent stacks more entries than fit.
-        unsafe { self.entries.get_unchecked_mut(self.len) }.write(entry);
+    fn len(&self) -> usize {
+        self.len
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<Entry> {
+        let last = self.len.checked_sub(1)?;
+        let entry = self.read(last);
+        self.len = last;
+        Some(entry)
+    }
+
+    #[inline(always)]
+    fn push(&mut self, entry: Entry) {
+        self.write(self.len, entry);
         self.len += 1;
     }
 
     #[inline(always)]
-    fn pop(&mut self) -> Option<(u32, f32)> {
-        self.len = self.len.checked_sub(1)?;
-        // SAFETY: all entries below the former length have been written.
-        Some(unsafe { self.entries.get_unchecked(self.len).assume_init() })
+    fn insert(&mut self, start: usize, entry: Entry) {
+        let mut slot = self.len;
+        while slot > start && self.read(slot - 1).is_before(entry) {
+            let moved = self.read(slot - 1);
+            self.write(slot, moved);
+            slot -= 1;
+        }
+        self.write(slot, entry);
+        self.len += 1;
     }
 }
