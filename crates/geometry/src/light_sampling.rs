@@ -23,12 +23,14 @@ fn solid_angle_density(pdf_a: f32, offset: Vector3, n: Normal3) -> f32 {
 }
 
 /// The inverse of [`solid_angle_density`].
+#[inline]
 fn area_density(pdf_w: f32, offset: Vector3, n: Normal3) -> f32 {
     let distance_squared = offset.length_squared();
     pdf_w * n.abs_dot_vector(offset) / (distance_squared * distance_squared.sqrt())
 }
 
 impl Geometry {
+    #[inline]
     fn entity(&self, geometry: GeometryId) -> &Entity {
         &self.entities[geometry.0 as usize]
     }
@@ -65,6 +67,7 @@ impl Geometry {
     }
 
     /// A point of a primitive as seen from `reference`, with its density per steradian.
+    #[inline]
     #[must_use]
     pub fn sample_from(
         &self,
@@ -99,6 +102,7 @@ impl Geometry {
     }
 
     /// The same density for a known point `p` of the primitive with unit normal `n`, without tracing a ray.
+    #[inline]
     #[must_use]
     pub fn pdf_from_point(
         &self,

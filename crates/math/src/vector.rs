@@ -169,7 +169,7 @@ macro_rules! vector_space {
             #[inline]
             #[must_use]
             pub fn normalized(self) -> Self {
-                self / self.length()
+                self * (1.0 / self.length())
             }
 
             /// The vector of length 1 in the same direction, or `None` where there is no direction.
@@ -177,7 +177,8 @@ macro_rules! vector_space {
             #[must_use]
             pub fn try_normalized(self) -> Option<Self> {
                 let length = self.length();
-                (length > 0.0 && length.is_finite()).then(|| self / length)
+                // A length above 0 is at least 3.7e-23, the root of the smallest number, and has a finite reciprocal.
+                (length > 0.0 && length.is_finite()).then(|| self * (1.0 / length))
             }
         }
     };

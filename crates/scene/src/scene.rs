@@ -162,6 +162,7 @@ impl Scene {
     }
 
     /// The surface at a hit of the ray, whose direction has length 1.
+    #[inline]
     #[must_use]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let attributes = &self.attributes[hit.geometry.0 as usize];
@@ -206,6 +207,7 @@ impl Scene {
     }
 
     /// Radiance in W/(m^2 sr nm) that a surface emits back along the path.
+    #[inline]
     #[must_use]
     pub fn emitted(&self, surface: &Surface, lambda: &Wavelengths) -> Sampled {
         let Some(light) = surface.light else {
@@ -217,6 +219,7 @@ impl Scene {
 
     /// The share of light that gets from a point of a light to a surface: 0 or 1 without media. `interface` surfaces
     /// let it pass.
+    #[inline]
     #[must_use]
     pub fn transmittance(&self, from: &Surface, to: &LightPoint) -> f32 {
         let origin = offset_ray_origin(from.point.p, from.point.p_error, from.point.ng, to.p - from.point.p);
@@ -233,6 +236,7 @@ impl Scene {
         self.transmittance_along(&from.spawn_ray(wi), f32::INFINITY)
     }
 
+    #[inline]
     fn transmittance_along(&self, ray: &Ray, t_max: f32) -> f32 {
         let blocked = if self.has_passable {
             self.geometry.occluded(ray, t_max, &|hit: &Hit| {

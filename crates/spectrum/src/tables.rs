@@ -122,7 +122,9 @@ impl SpectrumTables {
     #[must_use]
     pub fn sample(&self, id: TableId, wavelengths: &Wavelengths) -> Sampled {
         let table = self.table(id);
-        Sampled::from_array(wavelengths.lambda_nm().map(|nm| dense_lookup(table, nm)))
+        let [a, b, c, d] = wavelengths.lambda_nm();
+        let at = |nm: f32| dense_lookup(table, nm);
+        Sampled::from_array([at(a), at(b), at(c), at(d)])
     }
 }
 

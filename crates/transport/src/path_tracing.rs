@@ -21,7 +21,7 @@ use etendue_spectrum::{Sampled, Wavelengths};
 use crate::integrator::{Control, Integrator, PassEnd, Passes};
 use crate::lpe::{Event, LayerRecorder, PathExpressions};
 use crate::path::camera_pass::{CameraPass, CameraPath, Tracer, WavelengthMode};
-use crate::path::direct::{sample_light, unoccluded_light, visibility};
+use crate::path::direct::{sample_light, visibility};
 use crate::path::mis::power_heuristic;
 use crate::path::roulette::survival_probability;
 
@@ -354,11 +354,13 @@ impl<'s> Walk<'s> {
         let Some(light) = sample_light(tracer.scene, surface, path.sampler, path.lambda) else {
             return;
         };
-        let pdf_scatter = match self.settings.lights {
-            LightStrategy::Both => bsdf.pdf(surface.wo, light.sample.wi, TransportMode::Radiance, Lobes::ALL),
+        let wi = light.sample.wi;
+        let (f_cos, pdf_scatter) = bsdf.eval_cos_and_pdf(surface.wo, wi);
+        let light_weight = light.weighted(match self.settings.lights {
+            LightStrategy::Both => pdf_scatter,
             LightStrategy::Lights | LightStrategy::Scattering => 0.0,
-        };
-        let unoccluded = unoccluded_light(surface, bsdf, &light, pdf_scatter, Lobes::ALL);
+        });
+        let unoccluded = f_cos * light_weight;
         if unoccluded.is_black() {
             return;
         }
@@ -371,10 +373,13 @@ impl<'s> Walk<'s> {
         if path.layers.is_idle() {
             return;
         }
-        let glossy = unoccluded_light(surface, bsdf, &light, pdf_scatter, Lobes::GLOSSY);
-        let diffuse = unoccluded_light(surface, bsdf, &light, pdf_scatter, Lobes::DIFFUSE);
-        path.layers.emit_through(Event::glossy(bsdf.glossy_roughness()), through * glossy);
-        path.layers.emit_through(Event::Diffuse, through * diffuse);
+        let through_lobes = |lobes: Lobes| {
+            let f = bsdf.eval(surface.wo, wi, TransportMode::Radiance, lobes) * bsdf.abs_cos(wi);
+            through * (f * light_weight)
+        };
+        let (glossy, diffuse) = (through_lobes(Lobes::GLOSSY), through_lobes(Lobes::DIFFUSE));
+        path.layers.emit_through(Event::glossy(bsdf.glossy_roughness()), glossy);
+        path.layers.emit_through(Event::Diffuse, diffuse);
     }
 
     fn scatter(&mut self, surface: &Surface, sample: &BsdfSample, layers: &mut LayerRecorder<'_>) {

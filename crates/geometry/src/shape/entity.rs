@@ -214,6 +214,7 @@ impl Entity {
     }
 
     /// A point by direction from `reference`, with its density per steradian; `None` where that does not apply.
+    #[inline]
     pub(crate) fn sample_direction(
         &self,
         primitive: u32,
@@ -228,6 +229,7 @@ impl Entity {
     }
 
     /// The density per steradian of [`sample_direction`](Self::sample_direction) where that applies.
+    #[inline]
     pub(crate) fn direction_pdf(&self, primitive: u32, reference: &Reference) -> Option<f32> {
         match self {
             Self::Triangles(triangles) => triangles.solid_angle_pdf(primitive, reference.p),

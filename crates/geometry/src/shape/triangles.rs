@@ -229,6 +229,7 @@ impl Triangles {
         Some(self.sample_at(triangle, [b1, (1.0 - b0 - b1).max(0.0)], (1.0 / area) as f32))
     }
 
+    #[inline]
     fn sample_at(&self, triangle: u32, b: [f32; 2], pdf_a: f32) -> ShapeSample {
         let corners = self.corners(triangle);
         let p = double::to_point(interpolate(&corners, b));
@@ -237,13 +238,15 @@ impl Triangles {
     }
 
     /// The triangle on the sphere of directions around `p`, where sampling by direction applies.
+    #[inline]
     fn spherical(&self, triangle: u32, p: Point3) -> Option<SphericalTriangle> {
-        let spherical = SphericalTriangle::new(self.corners(triangle).map(double::to_point), p)?;
+        let spherical = SphericalTriangle::new(self.positions(triangle), p)?;
         SPHERICAL_SAMPLING.contains(&spherical.solid_angle()).then_some(spherical)
     }
 
     /// A point uniform in solid angle from `p` with its density per steradian; `None` where sampling by area is
     /// to be used.
+    #[inline]
     pub(crate) fn sample_solid_angle(
         &self,
         triangle: u32,
@@ -256,6 +259,7 @@ impl Triangles {
     }
 
     /// The density per steradian of [`sample_solid_angle`](Self::sample_solid_angle).
+    #[inline]
     pub(crate) fn solid_angle_pdf(&self, triangle: u32, p: Point3) -> Option<f32> {
         self.spherical(triangle, p).map(|spherical| spherical.pdf_w())
     }
@@ -266,6 +270,7 @@ fn largest_coordinate(points: &[Point3]) -> f64 {
 }
 
 /// The point with barycentric weights b1 and b2.
+#[inline]
 fn interpolate(corners: &[DVec3; 3], b: [f32; 2]) -> DVec3 {
     corners[0] + (corners[1] - corners[0]) * f64::from(b[0]) + (corners[2] - corners[0]) * f64::from(b[1])
 }

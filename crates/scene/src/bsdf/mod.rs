@@ -248,6 +248,18 @@ impl Bsdf {
         }
     }
 
+    /// [`Self::eval`] times [`Self::abs_cos`] of `wi`, and [`Self::pdf`] of all lobes, in radiance mode.
+    #[inline]
+    #[must_use]
+    pub fn eval_cos_and_pdf(&self, wo: Vector3, wi: Vector3) -> (Sampled, f32) {
+        let (local_o, local_i) = (self.frame.to_local(wo), self.frame.to_local(wi));
+        if local_o.z == 0.0 || local_i.z == 0.0 {
+            return (Sampled::ZERO, 0.0);
+        }
+        let f = self.kind.eval(local_o, local_i, TransportMode::Radiance, Lobes::ALL);
+        (f * local_i.z.abs(), self.kind.pdf(local_o, local_i, Lobes::ALL))
+    }
+
     /// A direction among the wanted lobes, from a number that chooses the lobe and a point that chooses within it.
     /// `None` if the path ends here.
     #[inline]

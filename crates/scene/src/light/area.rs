@@ -95,6 +95,7 @@ impl AreaEmission {
     }
 
     /// Radiance that leaves a surface with geometric normal `ng` at texture coordinates `uv` in the unit direction `wo`.
+    #[inline]
     #[must_use]
     pub fn le(
         &self,
@@ -193,10 +194,12 @@ impl AreaLight {
         self.is_visible
     }
 
+    #[inline]
     fn emission<'a>(&self, context: &LightContext<'a>) -> &'a AreaEmission {
         &context.tables.emissions[self.emission.0 as usize]
     }
 
+    #[inline]
     pub(super) fn le(
         &self,
         context: &LightContext,
@@ -208,6 +211,7 @@ impl AreaLight {
         self.emission(context).le(context, ng, uv, wo, lambda)
     }
 
+    #[inline]
     pub(super) fn sample_li(
         &self,
         context: &LightContext,
@@ -217,14 +221,16 @@ impl AreaLight {
     ) -> Option<LightSample> {
         let (s, pdf_w) = context.geometry.sample_from(self.geometry, self.primitive, reference, u)?;
         let to_light = s.p - reference.p;
-        let wi = to_light.try_normalized()?;
+        let distance = to_light.length();
+        let wi = to_light * (1.0 / distance);
         let emission = self.emission(context);
         let le = emission.le(context, s.n, s.uv, -wi, lambda) * emission.coverage(context, s.p, s.n, s.uv);
-        (pdf_w > 0.0 && pdf_w.is_finite() && !le.is_black()).then(|| LightSample {
+        let is_valid = distance > 0.0 && pdf_w > 0.0 && pdf_w.is_finite();
+        (is_valid && !le.is_black()).then(|| LightSample {
             wi,
             le,
             pdf_w,
-            distance: to_light.length(),
+            distance,
             is_delta: !self.is_visible,
             p_light: Some(LightPoint { p: s.p, p_error: s.p_error, n: Some(s.n), uv: s.uv }),
         })
@@ -237,6 +243,7 @@ impl AreaLight {
         context.geometry.pdf_from(self.geometry, self.primitive, reference, wi)
     }
 
+    #[inline]
     pub(super) fn pdf_li_at(
         &self,
         context: &LightContext,

@@ -127,6 +127,7 @@ macro_rules! dispatch {
 
 impl Light {
     /// A direction from `reference` to this light, with the radiance that arrives from there if nothing occludes it.
+    #[inline]
     #[must_use]
     pub fn sample_li(
         &self,
@@ -146,6 +147,7 @@ impl Light {
     }
 
     /// The same density where the point of the light in direction `wi` is known: `p` with geometric normal `ng`.
+    #[inline]
     #[must_use]
     pub fn pdf_li_at(
         &self,

@@ -165,15 +165,15 @@ impl LightTree {
 /// while another has some.
 #[inline]
 fn choose(weights: &[f32; N_CHILDREN], position: f32) -> (usize, f32) {
-    let mut start = 0.0;
-    let mut chosen = (0, 0.0);
-    for (index, weight) in weights.iter().enumerate() {
-        if *weight > 0.0 && (position >= start || weights[chosen.0] <= 0.0) {
-            chosen = (index, position - start);
-        }
-        start += weight;
+    let [a, b, c, _] = *weights;
+    let ends = [a, a + b, (a + b) + c];
+    let turn = ends.iter().map(|end| usize::from(position >= *end)).sum();
+    if weights[turn] > 0.0 {
+        let start = if turn == 0 { 0.0 } else { ends[turn - 1] };
+        return (turn, position - start);
     }
-    chosen
+    // Rounding led past the last share.
+    (weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0), 0.0)
 }
 
 type Item = (LightId, LightBounds);

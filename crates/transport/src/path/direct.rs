@@ -5,7 +5,6 @@
 
 use etendue_math::Sampler;
 use etendue_scene::Scene;
-use etendue_scene::bsdf::{Bsdf, Lobes, TransportMode};
 use etendue_scene::light::LightSample;
 use etendue_scene::scene::Surface;
 use etendue_spectrum::{Sampled, Wavelengths};
@@ -23,6 +22,7 @@ pub struct DirectLight {
 }
 
 /// Chooses a light and a direction to it. Always takes the same number of random numbers.
+#[inline]
 #[must_use]
 pub fn sample_light(
     scene: &Scene,
@@ -38,23 +38,19 @@ pub fn sample_light(
     (pdf_w > 0.0 && !sample.le.is_black()).then_some(DirectLight { sample, pdf_w })
 }
 
-/// What the surface sends on towards `wo` of a light's sample through the wanted lobes, visibility left out; weighted
-/// against scattering, whose density is `pdf_scatter`.
-#[must_use]
-pub fn unoccluded_light(
-    surface: &Surface,
-    bsdf: &Bsdf,
-    light: &DirectLight,
-    pdf_scatter: f32,
-    lobes: Lobes,
-) -> Sampled {
-    let wi = light.sample.wi;
-    let f = bsdf.eval(surface.wo, wi, TransportMode::Radiance, lobes) * bsdf.abs_cos(wi);
-    let weight = if light.sample.is_delta { 1.0 } else { power_heuristic(light.pdf_w, pdf_scatter) };
-    f * light.sample.le * (weight / light.pdf_w)
+impl DirectLight {
+    /// The light's radiance per density, weighted against scattering, whose density is `pdf_scatter`: what the product
+    /// of scattering function and cosine is multiplied by.
+    #[inline]
+    #[must_use]
+    pub fn weighted(&self, pdf_scatter: f32) -> Sampled {
+        let weight = if self.sample.is_delta { 1.0 } else { power_heuristic(self.pdf_w, pdf_scatter) };
+        self.sample.le * (weight / self.pdf_w)
+    }
 }
 
 /// The share of the light's sample that gets through to the surface.
+#[inline]
 #[must_use]
 pub fn visibility(tracer: &Tracer<'_>, surface: &Surface, light: &LightSample) -> f32 {
     tracer.count_shadow_ray();
