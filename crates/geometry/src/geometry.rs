@@ -100,10 +100,10 @@ impl Geometry {
         instance.world_derivatives(&local, ray.time)
     }
 
-    /// Texture coordinates at a hit, cheaper than [`surface_point`](Self::surface_point).
+    /// Texture coordinates at a position on a primitive, given as in [`Hit::uv`].
     #[must_use]
-    pub fn surface_uv(&self, hit: &Hit) -> Point2 {
-        self.entities[hit.geometry.0 as usize].uv(hit.primitive, hit.uv)
+    pub fn texture_coordinates(&self, geometry: GeometryId, primitive: u32, uv: [f32; 2]) -> Point2 {
+        self.entities[geometry.0 as usize].uv(primitive, uv)
     }
 
     /// The box around everything, at all times; empty if there is nothing.

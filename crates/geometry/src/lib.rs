@@ -13,6 +13,7 @@ mod shape;
 mod builder;
 mod geometry;
 mod instance;
+mod lamp;
 mod light_sampling;
 mod refit;
 mod subdivision;
@@ -30,6 +31,7 @@ pub use geometry::{Geometry, GeometryCounts};
 pub use hit::{
     GeometryId, Hit, NO_INSTANCE, ObjectId, Reference, ShapeSample, SurfaceDerivatives, SurfacePoint,
 };
+pub use lamp::FlatTriangle;
 pub use mesh::{BilinearMesh, MeshError, TriangleMesh};
 pub use refit::MovedVertices;
 pub use shape::Shape;

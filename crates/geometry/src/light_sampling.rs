@@ -13,9 +13,13 @@ use crate::geometry::Geometry;
 use crate::hit::{GeometryId, Reference, ShapeSample};
 use crate::shape::entity::Entity;
 
+/// Solid angles in which sampling triangles by direction is accurate, in steradians: all but nearly half the sphere.
+pub(crate) const SPHERICAL_SAMPLING: std::ops::RangeTo<f32> = ..6.22;
+
 /// The density per steradian of a point with density `pdf_a` per area, `offset` away with unit normal `n`; 0 where
 /// the surface is seen edge on.
-fn solid_angle_density(pdf_a: f32, offset: Vector3, n: Normal3) -> f32 {
+#[inline]
+pub(crate) fn solid_angle_density(pdf_a: f32, offset: Vector3, n: Normal3) -> f32 {
     let distance_squared = offset.length_squared();
     let cosine = n.abs_dot_vector(offset) / distance_squared.sqrt();
     let pdf_w = pdf_a * distance_squared / cosine;
@@ -24,14 +28,14 @@ fn solid_angle_density(pdf_a: f32, offset: Vector3, n: Normal3) -> f32 {
 
 /// The inverse of [`solid_angle_density`].
 #[inline]
-fn area_density(pdf_w: f32, offset: Vector3, n: Normal3) -> f32 {
+pub(crate) fn area_density(pdf_w: f32, offset: Vector3, n: Normal3) -> f32 {
     let distance_squared = offset.length_squared();
     pdf_w * n.abs_dot_vector(offset) / (distance_squared * distance_squared.sqrt())
 }
 
 impl Geometry {
     #[inline]
-    fn entity(&self, geometry: GeometryId) -> &Entity {
+    pub(crate) fn entity(&self, geometry: GeometryId) -> &Entity {
         &self.entities[geometry.0 as usize]
     }
 

@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::LocalSurface;
 use crate::double;
 use crate::hit::{ShapeSample, SurfaceDerivatives, SurfacePoint};
+use crate::light_sampling::SPHERICAL_SAMPLING;
 use crate::mesh::TriangleMesh;
 
 /// A triangle mesh in the space of its group.
@@ -22,9 +23,6 @@ pub(crate) struct Triangles {
     /// Largest magnitude of a coordinate.
     size: f64,
 }
-
-/// Solid angles in which sampling by direction is accurate, in steradians: all but nearly half the sphere.
-const SPHERICAL_SAMPLING: std::ops::RangeTo<f32> = ..6.22;
 
 impl Triangles {
     /// Moves a mesh into the space of its group, reusing its memory.

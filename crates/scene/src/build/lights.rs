@@ -57,7 +57,8 @@ impl Builder<'_, '_> {
             return;
         };
         attributes.first_light = Some(LightId(lights.len() as u32));
-        let primitives = primitives.map(|primitive| AreaLight::new(id, primitive, emission, tables));
+        let primitives =
+            primitives.map(|primitive| AreaLight::new(geometry, id, primitive, emission, tables));
         lights.extend(primitives.map(Light::Area));
     }
 

@@ -11,7 +11,7 @@
 
 use std::f32::consts::PI;
 
-use etendue_geometry::{GeometryId, Reference};
+use etendue_geometry::{FlatTriangle, Geometry, GeometryId, Reference, ShapeSample};
 use etendue_math::{Frame, Normal3, Point2, Point3, Ray, Vector3, warp};
 use etendue_spectrum::{Sampled, Spectrum, SpectrumTables, Wavelengths};
 
@@ -86,6 +86,12 @@ impl AreaEmission {
             }
             FloatTexture::Node(_) => Self { coverage: alpha, ..self },
         }
+    }
+
+    /// True if it depends on the place.
+    #[inline]
+    const fn varies(&self) -> bool {
+        self.picture.is_some() || self.coverage.constant().is_none()
     }
 
     /// True if both sides emit.
@@ -178,14 +184,42 @@ pub struct AreaLight {
     /// What it emits.
     pub emission: AreaEmissionId,
     is_visible: bool,
+    /// For the usual lamp a short way to its points.
+    triangle: Option<FlatTriangle>,
 }
 
 impl AreaLight {
-    /// A primitive of `geometry` with an emission of `tables`.
+    /// A primitive of the shape `id` of `geometry` with an emission of `tables`.
     #[must_use]
-    pub fn new(geometry: GeometryId, primitive: u32, emission: AreaEmissionId, tables: &LightTables) -> Self {
+    pub fn new(
+        geometry: &Geometry,
+        id: GeometryId,
+        primitive: u32,
+        emission: AreaEmissionId,
+        tables: &LightTables,
+    ) -> Self {
         let is_visible = tables.emissions[emission.0 as usize].is_visible;
-        Self { geometry, primitive, emission, is_visible }
+        let triangle = geometry.flat_triangle(id, primitive);
+        Self { geometry: id, primitive, emission, is_visible, triangle }
+    }
+
+    /// A point as seen from `reference`, with its density per steradian; with texture coordinates if `varies`.
+    #[inline]
+    fn sample_point(
+        &self,
+        context: &LightContext,
+        reference: &Reference,
+        u: Point2,
+        varies: bool,
+    ) -> Option<(ShapeSample, f32)> {
+        let Some(triangle) = &self.triangle else {
+            return context.geometry.sample_from(self.geometry, self.primitive, reference, u);
+        };
+        let (mut sample, pdf_w, b) = triangle.sample_from(reference, u)?;
+        if varies {
+            sample.uv = context.geometry.texture_coordinates(self.geometry, self.primitive, b);
+        }
+        Some((sample, pdf_w))
     }
 
     /// False if no ray meets its surface.
@@ -219,11 +253,11 @@ impl AreaLight {
         u: Point2,
         lambda: &Wavelengths,
     ) -> Option<LightSample> {
-        let (s, pdf_w) = context.geometry.sample_from(self.geometry, self.primitive, reference, u)?;
+        let emission = self.emission(context);
+        let (s, pdf_w) = self.sample_point(context, reference, u, emission.varies())?;
         let to_light = s.p - reference.p;
         let distance = to_light.length();
         let wi = to_light * (1.0 / distance);
-        let emission = self.emission(context);
         let le = emission.le(context, s.n, s.uv, -wi, lambda) * emission.coverage(context, s.p, s.n, s.uv);
         let is_valid = distance > 0.0 && pdf_w > 0.0 && pdf_w.is_finite();
         (is_valid && !le.is_black()).then(|| LightSample {
@@ -254,7 +288,10 @@ impl AreaLight {
         if !self.is_visible {
             return 0.0;
         }
-        context.geometry.pdf_from_point(self.geometry, self.primitive, reference, p, ng)
+        match &self.triangle {
+            Some(triangle) => triangle.pdf_from(reference, p),
+            None => context.geometry.pdf_from_point(self.geometry, self.primitive, reference, p, ng),
+        }
     }
 
     pub(super) fn sample_le(

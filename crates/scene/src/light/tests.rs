@@ -52,7 +52,8 @@ impl World {
             let area = (0..n).map(|primitive| geometry.area(id, primitive)).sum();
             let alpha = FloatTexture::Constant(1.0);
             let Some(emission) = tables.build_emission(&entity, &mut context, area, alpha) else { continue };
-            let primitives = (0..n).map(|primitive| AreaLight::new(id, primitive, emission, &tables));
+            let primitives =
+                (0..n).map(|primitive| AreaLight::new(&geometry, id, primitive, emission, &tables));
             lights.extend(primitives.map(Light::Area));
         }
         let (spectra, diagnostics) = (context.spectra, context.diagnostics);

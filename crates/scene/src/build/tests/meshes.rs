@@ -55,7 +55,7 @@ fn texture_coordinates_have_two_forms() {
         entity.parameters.retain(|p| p.name != "uv");
         let scene = scene(&lit_with(vec![shape(entity.with(name, value))]));
         let hit = scene.intersect(&down(0.5, -0.25), f32::INFINITY).expect("the square is below");
-        scene.geometry.surface_uv(&hit)
+        scene.geometry.texture_coordinates(hit.geometry, hit.primitive, hit.uv)
     };
     let pairs = floats(&[0.0, 0.0, 2.0, 0.0, 2.0, 2.0, 0.0, 2.0]);
     let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)].map(|(u, v)| Point2::new(u, v));
