@@ -90,7 +90,7 @@ impl Entity {
     #[inline]
     pub(crate) fn valid_triangle(&self, triangle: u32) -> Option<[[f32; 3]; 3]> {
         match self {
-            Self::Triangles(triangles) => triangles.is_valid(triangle).then(|| self.triangle(triangle)),
+            Self::Triangles(triangles) => triangles.valid_corners(triangle),
             Self::Patches(_) | Self::Quadric(_) => None,
         }
     }

@@ -67,7 +67,8 @@ impl Triangles {
 
     #[inline]
     pub(crate) fn positions(&self, triangle: u32) -> [Point3; 3] {
-        self.mesh.indices[triangle as usize].map(|vertex| self.mesh.positions[vertex as usize])
+        let [a, b, c] = self.mesh.indices[triangle as usize];
+        [a, b, c].map(|vertex| self.mesh.positions[vertex as usize])
     }
 
     #[inline]
@@ -89,11 +90,14 @@ impl Triangles {
             .then(|| self.mesh.indices[triangle as usize].map(|vertex| self.mesh.normals[vertex as usize]))
     }
 
-    /// True if the triangle can be hit: its corners are finite and not on one line.
-    pub(crate) fn is_valid(&self, triangle: u32) -> bool {
-        let positions = self.positions(triangle);
-        let [a, b, c] = positions.map(double::point);
-        positions.iter().all(|p| p.is_finite()) && (b - a).cross(c - a).length_squared() > 0.0
+    /// Corners of a triangle that can be hit: they are finite and not on one line.
+    #[inline]
+    pub(crate) fn valid_corners(&self, triangle: u32) -> Option<[[f32; 3]; 3]> {
+        let [a, b, c] = self.positions(triangle);
+        let origin = double::point(a);
+        let area = (double::point(b) - origin).cross(double::point(c) - origin).length_squared();
+        // Differences of single-precision numbers do not overflow in double precision: others are infinite or NaN.
+        (area > 0.0 && area < f64::INFINITY).then(|| [[a.x, a.y, a.z], [b.x, b.y, b.z], [c.x, c.y, c.z]])
     }
 
     /// Texture coordinates for the barycentric weights of a hit.
