@@ -97,7 +97,7 @@ impl Triangles {
         let origin = double::point(a);
         let area = (double::point(b) - origin).cross(double::point(c) - origin).length_squared();
         // Differences of single-precision numbers do not overflow in double precision: others are infinite or NaN.
-        (area > 0.0 && area < f64::INFINITY).then(|| [[a.x, a.y, a.z], [b.x, b.y, b.z], [c.x, c.y, c.z]])
+        (area > 0.0 && area < f64::INFINITY).then_some([[a.x, a.y, a.z], [b.x, b.y, b.z], [c.x, c.y, c.z]])
     }
 
     /// Texture coordinates for the barycentric weights of a hit.
