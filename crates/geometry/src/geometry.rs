@@ -201,6 +201,7 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Search<'_, F, ANY> {
         Verdict::Shorten(hit.t)
     }
 
+    #[inline(always)]
     fn enter(&mut self, index: u32, t_max: f32) -> Verdict {
         let instance = &self.geometry.instances[index as usize];
         let mut inner = Search::<_, ANY> {
@@ -211,7 +212,27 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Search<'_, F, ANY> {
             best: None,
         };
         inner.run(instance.group, t_max);
-        inner.best.map_or(Verdict::Pass, |hit| self.accept(hit))
+        match inner.best {
+            None => Verdict::Pass,
+            Some(hit) => self.accept(hit),
+        }
+    }
+
+    /// Tests a primitive that is no triangle.
+    #[inline(never)]
+    fn shape(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict {
+        let entity = &self.geometry.entities[item.geometry as usize];
+        for candidate in entity.intersect(item.primitive, self.ray).into_iter().flatten() {
+            let t = candidate.t as f32;
+            if t <= 0.0 || t > t_max {
+                continue;
+            }
+            let verdict = self.consider(item, t, [candidate.u as f32, candidate.v as f32]);
+            if verdict != Verdict::Pass {
+                return verdict;
+            }
+        }
+        Verdict::Pass
     }
 }
 
@@ -227,22 +248,8 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Visitor for Search<'_, F, ANY> {
         self.consider(triangle, t, b)
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn item(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict {
-        if item.geometry == INSTANCE {
-            return self.enter(item.primitive, t_max);
-        }
-        let entity = &self.geometry.entities[item.geometry as usize];
-        for candidate in entity.intersect(item.primitive, self.ray).into_iter().flatten() {
-            let t = candidate.t as f32;
-            if t <= 0.0 || t > t_max {
-                continue;
-            }
-            let verdict = self.consider(item, t, [candidate.u as f32, candidate.v as f32]);
-            if verdict != Verdict::Pass {
-                return verdict;
-            }
-        }
-        Verdict::Pass
+        if item.geometry == INSTANCE { self.enter(item.primitive, t_max) } else { self.shape(item, t_max) }
     }
 }

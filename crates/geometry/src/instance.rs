@@ -18,13 +18,9 @@ use crate::shape::LocalSurface;
 pub(crate) struct Instance {
     /// Index of its hierarchy.
     pub(crate) group: u32,
-    place: Place,
-}
-
-#[derive(Clone, Debug)]
-enum Place {
-    Still(Box<Maps>),
-    Moving(Box<Motion>),
+    /// Where it is; for a moving one, at the beginning.
+    maps: Maps,
+    motion: Option<Box<Motion>>,
 }
 
 /// Both directions of a map.
@@ -43,12 +39,8 @@ impl Maps {
 impl Instance {
     /// Places a group.
     pub(crate) fn new(group: u32, world_from_object: &AnimatedTransform) -> Self {
-        let place = if world_from_object.is_animated() {
-            Place::Moving(Box::new(world_from_object.motion()))
-        } else {
-            Place::Still(Box::new(Maps::new(double::affine(&world_from_object.start))))
-        };
-        Self { group, place }
+        let motion = world_from_object.is_animated().then(|| Box::new(world_from_object.motion()));
+        Self { group, maps: Maps::new(double::affine(&world_from_object.start)), motion }
     }
 
     /// The box of the group at all times, with room for rounding; `None` if there is nothing to hit.
@@ -56,12 +48,13 @@ impl Instance {
         if bounds.is_empty() {
             return None;
         }
-        let bounds = match &self.place {
-            Place::Still(maps) => {
-                let place = |p| double::to_point(maps.world_from_group.transform_point3(double::point(p)));
+        let bounds = match &self.motion {
+            None => {
+                let map = &self.maps.world_from_group;
+                let place = |p| double::to_point(map.transform_point3(double::point(p)));
                 Bounds3::from_points(bounds.corners().map(place))
             }
-            Place::Moving(motion) => motion.ends().motion_bounds(bounds),
+            Some(motion) => motion.ends().motion_bounds(bounds),
         };
         let largest = bounds.min.abs().max(bounds.max.abs());
         let margin = largest.as_vector() * (4.0 * f32::EPSILON) + Vector3::splat(f32::MIN_POSITIVE);
@@ -70,18 +63,16 @@ impl Instance {
     }
 
     fn maps(&self, time: f32) -> Maps {
-        match &self.place {
-            Place::Still(maps) => **maps,
-            Place::Moving(motion) => Maps::new(double::affine(&motion.at(time))),
-        }
+        self.motion.as_ref().map_or(self.maps, |motion| Maps::new(double::affine(&motion.at(time))))
     }
 
     /// The ray in the space of the group.
+    #[inline]
     pub(crate) fn group_ray(&self, ray: &Ray) -> Ray {
-        let maps = self.maps(ray.time);
-        let origin = maps.group_from_world.transform_point3(double::point(ray.origin));
-        let direction = maps.group_from_world.transform_vector3(double::vector(ray.direction));
-        Ray { origin: double::to_point(origin), direction: double::to_vector(direction), time: ray.time }
+        if self.motion.is_some() {
+            return carried(&self.maps(ray.time).group_from_world, ray);
+        }
+        carried(&self.maps.group_from_world, ray)
     }
 
     /// Carries a point, also given before rounding, to the world.
@@ -120,11 +111,16 @@ impl Instance {
 
     /// Bytes on the heap.
     pub(crate) const fn memory_bytes(&self) -> usize {
-        match &self.place {
-            Place::Still(_) => size_of::<Maps>(),
-            Place::Moving(_) => size_of::<Motion>(),
-        }
+        if self.motion.is_some() { size_of::<Motion>() } else { 0 }
     }
+}
+
+/// The ray after a map, rounded once.
+#[inline(always)]
+fn carried(map: &DAffine3, ray: &Ray) -> Ray {
+    let origin = map.transform_point3(double::point(ray.origin));
+    let direction = map.transform_vector3(double::vector(ray.direction));
+    Ray { origin: double::to_point(origin), direction: double::to_vector(direction), time: ray.time }
 }
 
 /// The error in the world of a ray that starts at the point and has its origin rounded in the space of the group.
