@@ -93,13 +93,13 @@ impl Node {
 
     #[inline(always)]
     fn enter<L: Lanes>(&self, lanes: L, ray: &TraversalRay, axis: usize) -> L::Floats {
-        let plane = lanes.load(lanes.row(&self.planes, ray.near_plane[axis]));
+        let plane = lanes.load(lanes.row(&self.planes, ray.planes[0][axis]));
         lanes.mul(lanes.sub(plane, lanes.splat(ray.near_origin[axis])), lanes.splat(ray.inverse[axis]))
     }
 
     #[inline(always)]
     fn leave<L: Lanes>(&self, lanes: L, ray: &TraversalRay, axis: usize) -> L::Floats {
-        let plane = lanes.load(lanes.row(&self.planes, ray.far_plane[axis]));
+        let plane = lanes.load(lanes.row(&self.planes, ray.planes[1][axis]));
         lanes.mul(lanes.sub(plane, lanes.splat(ray.far_origin[axis])), lanes.splat(ray.inverse_far[axis]))
     }
 }

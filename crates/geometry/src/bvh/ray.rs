@@ -19,10 +19,8 @@ pub(crate) struct TraversalRay {
     pub(super) inverse_far: [f32; 4],
     pub(super) near_origin: [f32; 4],
     pub(super) far_origin: [f32; 4],
-    /// Which of the six planes of a box the ray enters through, per axis.
-    pub(super) near_plane: [usize; 3],
-    /// Which it leaves through.
-    pub(super) far_plane: [usize; 3],
+    /// Which of the six planes of a box the ray enters through and which it leaves through, per axis.
+    pub(super) planes: &'static [[usize; 3]; 2],
     pub(super) shear: Shear,
 }
 
@@ -50,13 +48,13 @@ impl TraversalRay {
         let reach = (high - origin).abs().max((low - origin).abs()).max_element();
         let step = Vec4::splat(5.0 * f32::EPSILON * reach).copysign(direction);
         let inverse = Vec4::ONE / direction;
-        let signs = direction.is_negative_bitmask() as usize;
-        let near_plane = [(signs & 1) * 3, 1 + (signs >> 1 & 1) * 3, 2 + (signs >> 2 & 1) * 3];
         let d = direction.to_array();
         let axes = axes_by_length(direction.abs().to_array());
         let [x, y, z] = axes;
         let scale = 1.0 / d[z];
-        if !origin.is_finite() || !direction.is_finite() || d[z] == 0.0 {
+        // A difference of equal numbers is 0 unless they are not finite.
+        let zeros = (origin - origin) + (direction - direction);
+        if zeros.cmpeq(Vec4::ZERO).bitmask() != 0b1111 || d[z] == 0.0 {
             return None;
         }
         Some(Self {
@@ -66,17 +64,33 @@ impl TraversalRay {
             inverse_far: (inverse * Self::WIDEN).to_array(),
             near_origin: (origin + step).to_array(),
             far_origin: (origin - step).to_array(),
-            near_plane,
-            far_plane: [3 - near_plane[0], 5 - near_plane[1], 7 - near_plane[2]],
+            planes: &PLANES[direction.is_negative_bitmask() as usize & 7],
             shear: Shear { axes, x: -d[x] * scale, y: -d[y] * scale, z: scale },
         })
     }
 }
 
+/// For each combination of signs of a direction: the planes of a box where the ray enters and those where it leaves.
+static PLANES: [[[usize; 3]; 2]; 8] = {
+    let mut planes = [[[0; 3]; 2]; 8];
+    let mut signs = 0;
+    while signs < 8 {
+        let mut axis = 0;
+        while axis < 3 {
+            let is_negative = signs >> axis & 1;
+            planes[signs][is_negative][axis] = axis;
+            planes[signs][1 - is_negative][axis] = axis + 3;
+            axis += 1;
+        }
+        signs += 1;
+    }
+    planes
+};
+
 /// The longest axis last, the others in cyclic order. Without branches, which random directions would defeat.
 #[inline(always)]
 fn axes_by_length([x, y, z, _]: [f32; 4]) -> [usize; 3] {
-    const CYCLES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
+    static CYCLES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
     let y_exceeds_x = usize::from(y >= x);
     let longer = if y >= x { y } else { x };
     CYCLES[y_exceeds_x | usize::from(z >= longer) << 1]

@@ -10,7 +10,7 @@ use super::{Bvh, TraversalRay, Verdict, Visitor};
 use etendue_math::Ray;
 
 /// No descent stacks more entries: seven for each level of a tree as deep as `build.rs` lets it become.
-pub(super) const MAX_STACK: usize = 400;
+pub(super) const MAX_STACK: usize = 256;
 
 /// A node or leaf still to visit, behind the ray parameter where the ray enters it: bits of floats that are not negative
 /// order like the floats, and ties go to the child.
