@@ -54,6 +54,8 @@ pub(crate) enum Verdict {
 
 /// Receives what a ray may hit, roughly front to back.
 pub(crate) trait Visitor {
+    /// True where any hit will do, so that the order of visits matters little.
+    const ANY: bool;
     /// A triangle is hit at `t`; `b` are the weights of its second and third vertex.
     fn triangle(&mut self, triangle: PrimitiveRef, t: f32, b: [f32; 2]) -> Verdict;
     /// The ray meets the box of an item no farther than `t_max`.

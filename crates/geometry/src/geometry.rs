@@ -243,6 +243,8 @@ const fn order(hit: &Hit) -> (u32, u32, u32) {
 }
 
 impl<F: Fn(&Hit) -> bool, const ANY: bool> Visitor for Search<'_, F, ANY> {
+    const ANY: bool = ANY;
+
     #[inline]
     fn triangle(&mut self, triangle: PrimitiveRef, t: f32, b: [f32; 2]) -> Verdict {
         self.consider(triangle, t, b)

@@ -51,7 +51,7 @@ impl Entry {
 
 /// See [`super::Kernel::traverse`].
 #[inline(always)]
-pub(super) fn traverse<L: Lanes>(lanes: L, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {
+pub(super) fn traverse<L: Lanes, V: Visitor>(lanes: L, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut V) {
     if bvh.nodes.is_empty() {
         return;
     }
@@ -62,7 +62,7 @@ pub(super) fn traverse<L: Lanes>(lanes: L, bvh: &Bvh, ray: &Ray, t_max: f32, vis
     let mut current = 0;
     loop {
         let descended = match current >> 30 {
-            INNER => descend(lanes, lanes.node(bvh, current), ray, end, &mut stack),
+            INNER => descend::<L, V>(lanes, lanes.node(bvh, current), ray, end, &mut stack),
             TRIANGLES => {
                 if !visit_triangles(lanes, bvh, current, ray, &mut end, visitor) {
                     return;
@@ -89,7 +89,7 @@ pub(super) fn traverse<L: Lanes>(lanes: L, bvh: &Bvh, ray: &Ray, t_max: f32, vis
 
 /// Tests the children of a node; returns the nearest and stacks the others, the farthest lowest.
 #[inline(always)]
-fn descend<L: Lanes>(lanes: L, node: &Node, ray: &TraversalRay, end: f32, stack: &mut L::Stack) -> u32 {
+fn descend<L: Lanes, V: Visitor>(lanes: L, node: &Node, ray: &TraversalRay, end: f32, stack: &mut L::Stack) -> u32 {
     // Otherwise compilers broadcast the numbers of the ray before the loop, only to spill them.
     let ray = std::hint::black_box(ray);
     let (mask, near) = node.test(lanes, ray, lanes.splat(end * TraversalRay::WIDEN));
@@ -103,6 +103,17 @@ fn descend<L: Lanes>(lanes: L, node: &Node, ray: &TraversalRay, end: f32, stack:
         return first.child();
     }
     let second = Entry::of(node, &near, rest);
+    if V::ANY {
+        let mut last = second;
+        rest &= rest - 1;
+        stack.push(first);
+        while rest != 0 {
+            stack.push(last);
+            last = Entry::of(node, &near, rest);
+            rest &= rest - 1;
+        }
+        return last.child();
+    }
     let (mut first, second) = first.sorted(second);
     rest &= rest - 1;
     let start = stack.len();
