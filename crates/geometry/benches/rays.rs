@@ -2,7 +2,8 @@
 //! read on a machine that does other things too.
 //!
 //! The mesh is a terrain of 1.62 million triangles. Camera rays are coherent; rays that scatter from what they hit are
-//! not; shadow rays go from there to points of a low sun. Without `--bench`, as under `cargo test`, everything runs
+//! not, and random rays, in any direction from anywhere in the box of the terrain, even less; shadow rays go from what
+//! camera rays hit to points of a low sun. Each kind is traced by the instructions of the processor and portably. Without `--bench`, as under `cargo test`, everything runs
 //! once on a small terrain.
 
 use std::sync::OnceLock;
@@ -10,7 +11,9 @@ use std::sync::OnceLock;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use etendue_geometry::{Geometry, GeometryBuilder, Shape, TriangleMesh};
-use etendue_math::{AnimatedTransform, Frame, Point3, Ray, Rng, Transform, Vector3, offset_ray_origin, warp};
+use etendue_math::{
+    AnimatedTransform, Bounds3, Frame, Point3, Ray, Rng, Transform, Vector3, offset_ray_origin, warp,
+};
 
 #[expect(clippy::print_stdout, reason = "the memory belongs to the result")]
 fn main() {
@@ -56,7 +59,9 @@ fn builder(mesh: TriangleMesh) -> GeometryBuilder {
 /// The terrain with rays of each kind.
 struct Landscape {
     geometry: Geometry,
+    portable: Geometry,
     camera: Vec<Ray>,
+    random: Vec<Ray>,
     scattered: Vec<Ray>,
     shadow: Vec<Ray>,
 }
@@ -79,6 +84,13 @@ impl Landscape {
             .collect();
         let mut rng = Rng::new(1, 0);
         let (mut scattered, mut shadow) = (Vec::new(), Vec::new());
+        let Bounds3 { min, max } = geometry.bounds();
+        let mut random_ray = |_: &Ray| {
+            let [x, y, z] = [rng.next_f32(), rng.next_f32(), rng.next_f32()];
+            let origin = min + Vector3::new(x * (max - min).x, y * (max - min).y, z * (max - min).z);
+            Ray::new(origin, warp::sample_uniform_sphere(rng.next_point2()))
+        };
+        let random = camera.iter().map(&mut random_ray).collect();
         for ray in &camera {
             let Some(hit) = geometry.intersect(ray, f32::INFINITY, &|_| true) else { continue };
             let point = geometry.surface_point(ray, &hit);
@@ -88,7 +100,8 @@ impl Landscape {
             let sun = Frame::from_z(Vector3::new(0.9, 0.2, 0.25).normalized());
             shadow.push(spawn(sun.to_world(warp::sample_uniform_cone(rng.next_point2(), 0.999))));
         }
-        Self { geometry, camera, scattered, shadow }
+        let portable = builder(terrain(n)).build().traced_portably();
+        Self { geometry, portable, camera, random, scattered, shadow }
     }
 }
 
@@ -102,8 +115,17 @@ fn build(bencher: Bencher) {
         .bench_values(|builder| builder.build());
 }
 
-fn nearest(bencher: Bencher, rays: &[Ray]) {
-    let geometry = &landscape().geometry;
+/// The ways to trace.
+const KERNELS: [&str; 2] = ["detected", "portable"];
+
+impl Landscape {
+    fn traced_by(&self, kernel: &str) -> &Geometry {
+        if kernel == "portable" { &self.portable } else { &self.geometry }
+    }
+}
+
+fn nearest(bencher: Bencher, kernel: &str, rays: &[Ray]) {
+    let geometry = landscape().traced_by(kernel);
     bencher.counter(ItemsCount::new(rays.len())).bench(|| {
         let hits = rays.iter().map(|ray| geometry.intersect(black_box(ray), f32::INFINITY, &|_| true));
         hits.flatten().count()
@@ -111,21 +133,28 @@ fn nearest(bencher: Bencher, rays: &[Ray]) {
 }
 
 /// The nearest hit of camera rays.
-#[divan::bench(sample_count = 30, sample_size = 1)]
-fn nearest_of_camera_rays(bencher: Bencher) {
-    nearest(bencher, &landscape().camera);
+#[divan::bench(sample_count = 30, sample_size = 1, args = KERNELS)]
+fn nearest_of_camera_rays(bencher: Bencher, kernel: &str) {
+    nearest(bencher, kernel, &landscape().camera);
+}
+
+/// The nearest hit of random rays.
+#[divan::bench(sample_count = 30, sample_size = 1, args = KERNELS)]
+fn nearest_of_random_rays(bencher: Bencher, kernel: &str) {
+    nearest(bencher, kernel, &landscape().random);
 }
 
 /// The nearest hit of rays that scattered diffusely from the terrain.
-#[divan::bench(sample_count = 30, sample_size = 1)]
-fn nearest_of_scattered_rays(bencher: Bencher) {
-    nearest(bencher, &landscape().scattered);
+#[divan::bench(sample_count = 30, sample_size = 1, args = KERNELS)]
+fn nearest_of_scattered_rays(bencher: Bencher, kernel: &str) {
+    nearest(bencher, kernel, &landscape().scattered);
 }
 
 /// Any hit of rays towards a low sun.
-#[divan::bench(sample_count = 30, sample_size = 1)]
-fn any_of_shadow_rays(bencher: Bencher) {
-    let Landscape { geometry, shadow, .. } = landscape();
+#[divan::bench(sample_count = 30, sample_size = 1, args = KERNELS)]
+fn any_of_shadow_rays(bencher: Bencher, kernel: &str) {
+    let geometry = landscape().traced_by(kernel);
+    let shadow = &landscape().shadow;
     bencher.counter(ItemsCount::new(shadow.len())).bench(|| {
         shadow.iter().filter(|ray| geometry.occluded(black_box(ray), f32::INFINITY, &|_| true)).count()
     });

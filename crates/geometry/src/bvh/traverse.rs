@@ -89,7 +89,13 @@ pub(super) fn traverse<L: Lanes, V: Visitor>(lanes: L, bvh: &Bvh, ray: &Ray, t_m
 
 /// Tests the children of a node; returns the nearest and stacks the others, the farthest lowest.
 #[inline(always)]
-fn descend<L: Lanes, V: Visitor>(lanes: L, node: &Node, ray: &TraversalRay, end: f32, stack: &mut L::Stack) -> u32 {
+fn descend<L: Lanes, V: Visitor>(
+    lanes: L,
+    node: &Node,
+    ray: &TraversalRay,
+    end: f32,
+    stack: &mut L::Stack,
+) -> u32 {
     // Otherwise compilers broadcast the numbers of the ray before the loop, only to spill them.
     let ray = std::hint::black_box(ray);
     let (mask, near) = node.test(lanes, ray, lanes.splat(end * TraversalRay::WIDEN));
