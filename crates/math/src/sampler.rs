@@ -6,6 +6,7 @@
 //! To add a generator: a file in `sampler/` with a small `Clone + Debug` struct that has `new`, `next_1d` and
 //! `next_2d`; a variant of [`SamplerKind`] and of `Generator`, and a line in each `match` below.
 
+mod group;
 mod halton;
 mod independent;
 mod sobol;
@@ -35,9 +36,12 @@ pub enum SamplerKind {
     },
     /// Halton points with scrambled digits.
     Halton,
-    /// Sobol points, Owen-scrambled and padded.
+    /// Sobol points, Owen-scrambled, even within each segment of a path.
     #[default]
     Sobol,
+    /// The same along a curve through all pixels, so that the errors of neighbours cancel. Best with the planned number of
+    /// samples and with powers of two.
+    ZSobol,
 }
 
 /// What determines all numbers of an image.
@@ -47,7 +51,7 @@ pub struct SamplerSettings {
     pub kind: SamplerKind,
     /// Images of different seeds are independent.
     pub seed: u64,
-    /// Samples planned for each pixel; the numbers of a sample do not depend on it.
+    /// Samples planned for each pixel; only the numbers of [`SamplerKind::ZSobol`] depend on it.
     pub samples_per_pixel: u32,
 }
 
@@ -81,7 +85,23 @@ impl Sampler {
             }
             SamplerKind::Halton => Generator::Halton(Halton::new(seed, sample_index)),
             SamplerKind::Sobol => Generator::Sobol(Sobol::new(seed, sample_index)),
+            SamplerKind::ZSobol => Generator::Sobol(Sobol::along_curve(
+                settings.seed,
+                pixel,
+                settings.samples_per_pixel,
+                sample_index,
+            )),
         })
+    }
+
+    /// Says that the numbers up to the next call belong to one vertex of a path: in this order, of those that are wanted,
+    /// one and two to choose a light and a point of it, one and two to scatter, one for roulette. Before the first call:
+    /// the wavelength, the place in the pixel, time, and lens. Then numbers mean the same in all samples, although paths differ.
+    #[inline]
+    pub fn start_vertex(&mut self) {
+        if let Generator::Sobol(generator) = &mut self.0 {
+            generator.start_vertex();
+        }
     }
 
     /// The next number.

@@ -248,6 +248,7 @@ impl<'s> Walk<'s> {
             if self.settings.regularize && self.has_scattered_widely {
                 bsdf.regularize();
             }
+            path.sampler.start_vertex();
             if self.settings.lights != LightStrategy::Scattering && bsdf.lobes().has_non_specular() {
                 self.add_direct_light(tracer, &surface, &bsdf, path);
             }

@@ -3,11 +3,12 @@
 use super::*;
 use crate::statistics::{Moments, chi_square_test, log_log_slope, mean_test};
 
-const KINDS: [SamplerKind; 4] = [
+const KINDS: [SamplerKind; 5] = [
     SamplerKind::Independent,
     SamplerKind::Stratified { x: 4, y: 4, jitter: true },
     SamplerKind::Halton,
     SamplerKind::Sobol,
+    SamplerKind::ZSobol,
 ];
 
 fn settings(kind: SamplerKind) -> SamplerSettings {
@@ -32,7 +33,9 @@ fn samples_are_fixed_by_seed_pixel_and_index() {
             |settings: &SamplerSettings, pixel, index| deal(&mut Sampler::new(settings, pixel, index));
         let reference = numbers(&settings, [3, 4], 5);
         assert_eq!(reference, numbers(&settings, [3, 4], 5));
-        assert_eq!(reference, numbers(&SamplerSettings { samples_per_pixel: 99, ..settings }, [3, 4], 5));
+        if kind != SamplerKind::ZSobol {
+            assert_eq!(reference, numbers(&SamplerSettings { samples_per_pixel: 99, ..settings }, [3, 4], 5));
+        }
         for other in [
             numbers(&settings, [4, 3], 5),
             numbers(&settings, [3, 4], 6),
@@ -85,11 +88,11 @@ fn numbers_are_uniform_and_uncorrelated() {
     }
 }
 
-/// Neighbouring pixels have independent numbers: the product of their deviations averages to 0.
+/// Neighbouring pixels have independent numbers, but on a curve: the product of their deviations averages to 0.
 #[test]
 fn pixels_are_independent() {
-    for kind in KINDS {
-        let settings = settings(kind);
+    for kind in &KINDS[..4] {
+        let settings = settings(*kind);
         let first = |x, y| f64::from(Sampler::new(&settings, [x, y], 0).next_1d()) - 0.5;
         let mut products = Moments::new();
         for y in 0..150 {
@@ -135,7 +138,7 @@ fn sobol_prefixes_are_nets() {
             samples.iter().for_each(|s| seen[(s[d] * n as f32) as usize] = true);
             assert!(seen.iter().all(|s| *s), "dimension {d} of 2^{m} samples");
         }
-        for [d, e] in [[1, 2], [3, 4], [5, 6], [7, 8]] {
+        for [d, e] in [[1, 2], [3, 4], [7, 8]] {
             for k in 0..=m {
                 let (nx, ny) = (1_usize << k, 1_usize << (m - k));
                 let mut seen = vec![false; n];
@@ -148,32 +151,122 @@ fn sobol_prefixes_are_nets() {
     }
 }
 
+/// Place in the pixel and on the first light, or direction and the next light.
+fn segment(sampler: &mut Sampler) -> [f32; 4] {
+    let p = sampler.next_2d();
+    sampler.start_vertex();
+    let q = sampler.next_2d();
+    [p.x, p.y, q.x, q.y]
+}
+
+/// True if every box of volume 2^(t - m), its sides powers of 1/2, holds 2^t of the 2^m points.
+fn is_net<const N: usize>(points: &[[f32; N]], t: u32) -> bool {
+    fn visit<const N: usize>(points: &[[f32; N]], bits: &mut [u32; N], d: usize, left: u32, t: u32) -> bool {
+        if d + 1 < N {
+            return (0..=left).all(|k| {
+                bits[d] = k;
+                visit(points, bits, d + 1, left - k, t)
+            });
+        }
+        bits[d] = left;
+        let mut counts = vec![0; points.len() >> t];
+        for point in points {
+            let cell = point
+                .iter()
+                .zip(*bits)
+                .fold(0, |cell, (x, k)| cell << k | (x * (1_u32 << k) as f32) as usize);
+            counts[cell] += 1;
+        }
+        counts.iter().all(|n| *n == 1 << t)
+    }
+    let m = points.len().ilog2();
+    visit(points, &mut [0; N], 0, m - t.min(m), t.min(m))
+}
+
 /// The four numbers of a group: every box of volume 2^(2 - m) holds four of 2^m samples.
 #[test]
 fn sobol_groups_are_nets_of_quality_2() {
     let settings = settings(SamplerKind::Sobol);
-    for m in 2..=9_u32 {
-        let samples: Vec<[f32; 4]> = (0..1 << m)
-            .map(|index| {
-                let mut sampler = Sampler::new(&settings, [5, 6], index);
-                let (p, q) = (sampler.next_2d(), sampler.next_2d());
-                [p.x, p.y, q.x, q.y]
+    let numbers = |deal: &dyn Fn(&mut Sampler) -> [f32; 4], m: u32| -> Vec<[f32; 4]> {
+        (0..1 << m).map(|index| deal(&mut Sampler::new(&settings, [5, 6], index))).collect()
+    };
+    for m in 0..=9 {
+        assert!(is_net(&numbers(&segment, m), 2), "2^{m} samples from the camera");
+        let later = |sampler: &mut Sampler| {
+            sampler.start_vertex();
+            sampler.next_2d();
+            segment(sampler)
+        };
+        assert!(is_net(&numbers(&later, m), 2), "2^{m} samples from the first vertex");
+    }
+    assert!(!is_net(&numbers(&segment, 8), 1), "the test can fail");
+}
+
+/// Choice of a light and point on it, wavelength and place in the pixel: three numbers that are even together.
+#[test]
+fn sobol_triples_are_nets() {
+    let triple = |sampler: &mut Sampler| {
+        let (x, p) = (sampler.next_1d(), sampler.next_2d());
+        [x, p.x, p.y]
+    };
+    let settings = settings(SamplerKind::Sobol);
+    for m in 0..=10 {
+        let samplers = || (0..1 << m).map(|index| Sampler::new(&settings, [5, 6], index));
+        let cameras: Vec<[f32; 3]> = samplers().map(|mut s| triple(&mut s)).collect();
+        let lights: Vec<[f32; 3]> = samplers()
+            .map(|mut s| {
+                s.start_vertex();
+                triple(&mut s)
             })
             .collect();
-        let splits = (0..=m - 2).flat_map(|a| (0..=m - 2 - a).map(move |b| (a, b)));
-        for (a, b, c) in splits.flat_map(|(a, b)| (0..=m - 2 - a - b).map(move |c| (a, b, c))) {
-            let bits = [a, b, c, m - 2 - a - b - c];
-            let mut counts = vec![0; 1 << (m - 2)];
-            for sample in &samples {
-                let cell = sample
-                    .iter()
-                    .zip(bits)
-                    .fold(0, |cell, (x, bits)| cell << bits | (x * (1_u32 << bits) as f32) as usize);
-                counts[cell] += 1;
-            }
-            assert!(counts.iter().all(|n| *n == 4), "2^{m} samples in boxes of 2^-{bits:?}: {counts:?}");
-        }
+        assert!(is_net(&cameras, 3), "2^{m} samples at the camera");
+        assert!(is_net(&lights, if m <= 6 { 2 } else { 3 }), "2^{m} samples at a light");
     }
+}
+
+/// On the curve every pixel has a net, the pixels of every square of 2^k by 2^k together have one, and samples beyond the
+/// planned ones form nets of their own.
+#[test]
+fn pixels_along_the_curve_share_nets() {
+    let settings = SamplerSettings { kind: SamplerKind::ZSobol, seed: 3, samples_per_pixel: 16 };
+    let numbers = |x: std::ops::Range<u32>, y: std::ops::Range<u32>, samples: std::ops::Range<u64>| {
+        let mut points = Vec::new();
+        for (x, y) in x.flat_map(|x| y.clone().map(move |y| (x, y))) {
+            points.extend(samples.clone().map(|i| segment(&mut Sampler::new(&settings, [x, y], i))));
+        }
+        points
+    };
+    assert!(is_net(&numbers(7..8, 300..301, 0..16), 2));
+    assert!(is_net(&numbers(7..8, 300..301, 0..8), 2));
+    assert!(is_net(&numbers(6..8, 4..6, 0..16), 2));
+    assert!(is_net(&numbers(8..12, 16..20, 0..16), 2));
+    assert!(is_net(&numbers(8..12, 16..20, 16..32), 2));
+    // Other squares are none, and neither is what no one planned.
+    assert!(!is_net(&numbers(7..9, 4..6, 0..16), 2));
+    assert!(!is_net(&numbers(8..12, 16..20, 8..24), 2));
+    // Beyond the curve's end another begins.
+    let last = SamplerSettings { samples_per_pixel: 1 << 20, ..settings };
+    let at = |x: u32| Sampler::new(&last, [x, 0], 0).next_2d();
+    assert_ne!(at(3), at(3 + 64));
+}
+
+/// The errors of neighbours on the curve cancel: the mean over blocks of pixels errs less than with points of their own.
+#[test]
+fn errors_along_the_curve_cancel() {
+    let block_error = |kind| {
+        let mut squares = 0.0;
+        for seed in 0..200 {
+            let settings = SamplerSettings { kind, seed, samples_per_pixel: 4 };
+            let mut sum = 0.0;
+            for (x, y) in (0..4).flat_map(|x| (0..4).map(move |y| (x, y))) {
+                sum += (0..4).map(|i| bump(Sampler::new(&settings, [x, y], i).next_2d())).sum::<f64>();
+            }
+            squares += (sum / 64.0 - 7.0 / 12.0).powi(2);
+        }
+        squares
+    };
+    let (curve, own) = (block_error(SamplerKind::ZSobol), block_error(SamplerKind::Sobol));
+    assert!(curve < 0.3 * own, "{curve} {own}");
 }
 
 /// Root mean square error of the mean of `f` over the first n samples, over pixels, for each n of 2^0 ... 2^(steps - 1).
@@ -225,16 +318,14 @@ fn sobol_converges_faster_than_random() {
 #[test]
 fn sobol_groups_are_even_in_four_dimensions() {
     let steps = 11;
-    let product = |s: &mut Sampler| {
-        let (p, q) = (s.next_2d(), s.next_2d());
-        [p.x, p.y, q.x, q.y].iter().map(|x| 1.0 + (f64::from(*x) - 0.5)).product()
-    };
+    let product = |s: &mut Sampler| segment(s).iter().map(|x| 1.0 + (f64::from(*x) - 0.5)).product();
     let together = errors(SamplerKind::Sobol, steps, 1.0, product);
     assert!(log_log_slope(&counts(steps), &together) < -1.1, "{together:?}");
     // Halves of two groups share no order: their product falls as N^-1/2 only.
     let apart = errors(SamplerKind::Sobol, steps, 0.0, |s| {
         let a = s.next_1d();
-        s.next_2d();
+        s.start_vertex();
+        s.start_vertex();
         let b = s.next_1d();
         f64::from(a - 0.5) * f64::from(b - 0.5)
     });

@@ -198,7 +198,7 @@ fn read_sensor(p: &mut Parameters<'_, '_>, document: &Document) -> Sensor {
 }
 
 pub(super) fn build_sampler(document: &Document, context: &mut BuildContext<'_>) -> SamplerSettings {
-    let fallback = Entity::new("zsobol");
+    let fallback = Entity::new("sobol");
     let entity = document.sampler.as_ref().unwrap_or(&fallback);
     let option_seed = document.options.iter().find(|o| o.name == "seed").and_then(|o| match &o.value {
         Value::Integers(values) => values.first().copied(),
@@ -214,7 +214,8 @@ pub(super) fn build_sampler(document: &Document, context: &mut BuildContext<'_>)
             let jitter = p.bool("jitter", true);
             (SamplerKind::Stratified { x: x as u32, y: y as u32, jitter }, x.saturating_mul(y))
         }
-        "sobol" | "zsobol" | "paddedsobol" | "pmj02bn" => (SamplerKind::Sobol, p.integer("pixelsamples", 16)),
+        "sobol" | "paddedsobol" | "pmj02bn" => (SamplerKind::Sobol, p.integer("pixelsamples", 16)),
+        "zsobol" => (SamplerKind::ZSobol, p.integer("pixelsamples", 16)),
         unknown => {
             let span = p.span();
             p.diagnostics().unknown_name(span, "sampler", unknown, known_names(SAMPLERS));

@@ -155,8 +155,7 @@ fn error_falls_with_very_many_samples() {
     let n: Vec<f64> = counts.iter().map(|n| *n as f64).collect();
     let slope = log_log_slope(&n, &rmse_at("independent", &counts));
     assert!((slope + 0.5).abs() < 0.02, "independent samples: {slope}");
-    // Steeper than what counts as -1/2. Padded Sobol points bend back to -1/2 at many samples, since their groups of
-    // dimensions are paired at random (docs/convergence.md).
+    // Steeper than what counts as -1/2.
     for sampler in ["sobol", "halton"] {
         let slope = log_log_slope(&n, &rmse_at(sampler, &counts));
         assert!(slope < -0.55, "{sampler}: {slope}");

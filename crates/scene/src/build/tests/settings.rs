@@ -61,9 +61,14 @@ fn samplers_by_name() {
         let settings = scene(&sampler(entity)).sampler;
         (settings.kind, settings.samples_per_pixel)
     };
-    for name in ["sobol", "zsobol", "paddedsobol", "pmj02bn"] {
+    for (name, kind) in [
+        ("sobol", SamplerKind::Sobol),
+        ("paddedsobol", SamplerKind::Sobol),
+        ("pmj02bn", SamplerKind::Sobol),
+        ("zsobol", SamplerKind::ZSobol),
+    ] {
         let entity = Entity::new(name).with("pixelsamples", integers(&[7]));
-        assert_eq!(settings(entity.with("randomization", strings(&["owen"]))), (SamplerKind::Sobol, 7));
+        assert_eq!(settings(entity.with("randomization", strings(&["owen"]))), (kind, 7));
     }
     assert_eq!(settings(Entity::new("halton")), (SamplerKind::Halton, 16));
     assert_eq!(settings(Entity::new("independent")), (SamplerKind::Independent, 16));
