@@ -24,7 +24,7 @@ pub struct MovedVertices {
 
 impl Geometry {
     /// Moves the vertices of triangle meshes. Rays then meet what they would meet after a build from scratch, which
-    /// takes about three times as long, but which makes rays faster where vertices have changed places a lot.
+    /// takes about four times as long, but which makes rays faster where vertices have changed places a lot.
     ///
     /// Nothing changes where an array has the wrong length or holds a number that is not finite.
     pub fn move_vertices(&mut self, moved: Vec<MovedVertices>) -> Result<(), MeshError> {
