@@ -1,5 +1,4 @@
-//! Approximations against double precision, over every 2039th bit pattern, or every 61st if `ETENDUE_SLOW` is set; all
-//! of them (stride 1, ten minutes) gave the same greatest errors.
+//! Approximations against double precision, over every 2039th bit pattern, or every 61st if `ETENDUE_SLOW` is set.
 
 use super::*;
 
