@@ -32,6 +32,8 @@ pub(crate) enum Command {
     Tonemap(TonemapArguments),
     /// Run an experiment with the renderer: a table and a figure
     Study(StudyArguments),
+    /// Tell how fast this machine is: rays, paths, look-ups and more per second
+    Bench(BenchArguments),
 }
 
 /// Arguments of `render`.
@@ -263,6 +265,20 @@ pub(crate) enum StudyName {
     Convergence,
     /// How the mean of one pixel settles
     Pixel,
+}
+
+/// Arguments of `bench`.
+#[derive(Args, Debug)]
+pub(crate) struct BenchArguments {
+    /// Print one JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Number of threads beside one [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..1024), allow_negative_numbers = true)]
+    pub(crate) threads: Option<u64>,
+    /// Tiny scenes in a blink: shows that it works, and no speed
+    #[arg(long)]
+    pub(crate) quick: bool,
 }
 
 fn parse_duration(text: &str) -> Result<Duration, String> {

@@ -4,6 +4,7 @@
 //! 1 failed while running, 2 bad usage or bad scene, 130 interrupted with what was finished written.
 
 mod args;
+mod bench;
 mod compare;
 mod failure;
 mod info;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
         Command::Merge(arguments) => merge::run(&arguments),
         Command::Tonemap(arguments) => tonemap::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -133,6 +133,14 @@ impl Kernel {
         avx2: None,
     };
 
+    /// True if it needs AVX2.
+    pub(crate) const fn is_avx2(self) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        return self.avx2.is_some();
+        #[cfg(not(target_arch = "x86_64"))]
+        false
+    }
+
     /// Shows the visitor every primitive of the tree that the ray may hit with t in (0, `t_max`], near ones first.
     #[inline(always)]
     pub(crate) fn traverse(self, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {

@@ -57,6 +57,12 @@ impl Geometry {
         Self { kernel: Kernel::PORTABLE, ..self }
     }
 
+    /// True if rays are traced by the instructions AVX2.
+    #[must_use]
+    pub const fn is_traced_by_avx2(&self) -> bool {
+        self.kernel.is_avx2()
+    }
+
     /// The nearest accepted hit with t in (0, `t_max`), of equally near ones the first in order of instance, shape and
     /// primitive. `filter` sees each candidate and may refuse it.
     #[inline]

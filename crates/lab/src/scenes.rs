@@ -35,6 +35,12 @@ impl StudyScene {
         Self::of_text("box", include_str!("../../../scenes/box.pbrt"))
     }
 
+    /// The classic Cornell box of 32 triangles, by which renderers compare their speed.
+    #[must_use]
+    pub fn cornell_box() -> Self {
+        Self::of_text("Cornell box", include_str!("../../../scenes/cornell.pbrt"))
+    }
+
     fn of_text(name: &str, text: &str) -> Self {
         let (document, diagnostics) = read_pbrt_str(name, text, Path::new(""));
         assert!(!diagnostics.has_errors(), "the scene \"{name}\" is part of this crate and reads");

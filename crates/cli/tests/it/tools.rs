@@ -1,4 +1,4 @@
-//! `compare`, `tonemap` and `study`.
+//! `compare`, `tonemap`, `study` and `bench`.
 
 use etendue::image::Image;
 use etendue::io::images::write_image;
@@ -149,4 +149,29 @@ fn studies() {
     folder.write("file", "");
     folder.run("study pixel --quick --out file").expect(1).says("cannot make the folder file");
     folder.run("study everything").expect(2).says("convergence");
+}
+
+/// The speed of the machine, for programs and for people: every figure is positive.
+#[test]
+fn bench() {
+    let folder = Folder::new();
+    let json = folder.run("bench --quick --threads 2 --json").expect(0).json();
+    assert_eq!(json["threads"], 2);
+    assert!(json["avx2"].is_boolean());
+    let figures = json["figures"].as_object().expect("figures");
+    for key in
+        ["primary_rays", "random_rays", "bounce_rays", "shadow_rays", "triangles_built", "paths", "look_ups"]
+    {
+        assert!(figures.contains_key(&format!("{key}_per_s")), "{key}");
+    }
+    for (name, figure) in figures {
+        for threads in ["one_thread", "all_threads"] {
+            assert!(figure[threads].as_f64().is_some_and(|rate| rate > 0.0), "{name}: {figure}");
+        }
+    }
+    let text = folder.run("bench --quick --threads 2").expect(0).stdout;
+    assert!(text.starts_with("2 threads"), "{text}");
+    // A line of the machine, a head, and the figures.
+    assert_eq!(text.lines().count(), 2 + figures.len(), "{text}");
+    assert!(folder.files().is_empty());
 }

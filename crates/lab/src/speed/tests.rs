@@ -1,8 +1,8 @@
 //! Tests of the built-in models.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use super::{Model, RayKind, ray_sets};
+use super::{Model, RayKind, Task, TaskSize, ray_sets, tasks};
 
 /// The models have as many triangles as they should.
 #[test]
@@ -46,4 +46,16 @@ fn rays_hit() {
             );
         }
     }
+}
+
+/// Every task does some work, also with several threads, and no two have the same name.
+#[test]
+fn tasks_work() {
+    let (tasks, _) = tasks(&TaskSize::TINY);
+    let amounts: Vec<u64> = tasks.iter().map(Task::run).collect();
+    assert!(amounts.iter().all(|n| *n > 0), "{amounts:?}");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("threads start");
+    assert_eq!(pool.install(|| tasks.iter().map(Task::run).collect::<Vec<_>>()), amounts);
+    let keys: HashSet<&str> = tasks.iter().map(|task| task.key).collect();
+    assert_eq!(keys.len(), tasks.len());
 }

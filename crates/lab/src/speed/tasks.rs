@@ -1,0 +1,170 @@
+//! Pieces of work by which machines can be compared.
+
+use std::fmt;
+use std::sync::Arc;
+
+use etendue_geometry::Geometry;
+use etendue_geometry::points::{Neighbours, PointTree};
+use etendue_math::{Point3, Rng, Sampler, SamplerSettings};
+use etendue_scene::Film;
+use etendue_transport::{Stop, Unobserved, render};
+use rayon::prelude::*;
+
+use super::model::Model;
+use super::rays::{RayKind, ray_sets};
+use crate::estimator::{Estimator, SamplerChoice};
+use crate::scenes::StudyScene;
+
+/// Something to do again and again while a clock runs.
+pub struct Task {
+    /// Name for tables, such as "primary rays".
+    pub name: &'static str,
+    /// Name for programs, such as `primary_rays`.
+    pub key: &'static str,
+    work: Box<dyn Fn() -> u64 + Send + Sync>,
+}
+
+impl fmt::Debug for Task {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Task").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+impl Task {
+    fn new(name: &'static str, key: &'static str, work: impl Fn() -> u64 + Send + Sync + 'static) -> Self {
+        Self { name, key, work: Box::new(work) }
+    }
+
+    /// Does it once with the threads of the current rayon pool; the number of rays, triangles, paths, look-ups or
+    /// random numbers it took.
+    pub fn run(&self) -> u64 {
+        (self.work)()
+    }
+}
+
+/// How much work a task is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TaskSize {
+    /// Cells along a side of the terrain.
+    pub terrain: u32,
+    /// Rays of each kind.
+    pub rays: [u32; 2],
+    /// Pixels along a side of the picture of the Cornell box.
+    pub picture: u32,
+    /// Points to look up.
+    pub points: u32,
+}
+
+impl TaskSize {
+    /// What figures are quoted for: each takes a fraction of a second.
+    pub const FULL: Self = Self { terrain: 900, rays: [640, 480], picture: 512, points: 1_000_000 };
+
+    /// Nearly nothing, to see that it works.
+    pub const TINY: Self = Self { terrain: 30, rays: [32, 24], picture: 16, points: 1000 };
+}
+
+/// Rays, look-ups or random numbers that a thread does before it asks for more.
+const CHUNK: usize = 1 << 12;
+
+/// All tasks, ready to run, and whether rays are traced by AVX2.
+#[must_use]
+pub fn tasks(size: &TaskSize) -> (Vec<Task>, bool) {
+    let terrain = Model::terrain(size.terrain);
+    let geometry = Arc::new(terrain.clone().into_builder().build());
+    let mut tasks = ray_tasks(&terrain, &geometry, size.rays);
+    tasks.push(Task::new("triangles built", "triangles_built", move || {
+        std::hint::black_box(terrain.clone().into_builder().build()).counts().n_triangles as u64
+    }));
+    tasks.push(path_task(size.picture));
+    tasks.push(look_up_task(size.points));
+    tasks.push(Task::new("random numbers", "random_numbers", random_numbers));
+    (tasks, geometry.is_traced_by_avx2())
+}
+
+fn ray_tasks(model: &Model, geometry: &Arc<Geometry>, resolution: [u32; 2]) -> Vec<Task> {
+    let tasks = ray_sets(model, geometry, resolution).into_iter().map(|set| {
+        let (name, key) = match set.kind {
+            RayKind::Primary => ("primary rays", "primary_rays"),
+            RayKind::Random => ("random rays", "random_rays"),
+            RayKind::Bounce => ("bounce rays", "bounce_rays"),
+            RayKind::Shadow => ("shadow rays", "shadow_rays"),
+        };
+        let geometry = Arc::clone(geometry);
+        Task::new(name, key, move || {
+            let n = set.rays.len();
+            let starts: Vec<usize> = (0..n).step_by(CHUNK).collect();
+            let hits = |start: &usize| set.count_hits(&geometry, *start..n.min(start + CHUNK));
+            let n_hits: usize = starts.par_iter().map(hits).sum();
+            std::hint::black_box(n_hits);
+            n as u64
+        })
+    });
+    tasks.collect()
+}
+
+/// One sample for each pixel of the Cornell box, of at most 8 scattering events, with independent random numbers.
+fn path_task(width: u32) -> Task {
+    let scene = StudyScene::cornell_box().with_resolution([width, width]).build();
+    Task::new("paths", "paths", move || {
+        let mut integrator = Estimator::of_sampler(SamplerChoice::Independent).integrator(&scene);
+        let mut film = Film::new(scene.film.clone(), Vec::new());
+        let stop = Stop { passes: 0..1, error: None };
+        render(&scene, integrator.as_mut(), &mut film, &stop, &Unobserved);
+        u64::from(width) * u64::from(width)
+    })
+}
+
+/// Neighbours of a look-up.
+const NEIGHBOURS: usize = 50;
+
+/// The nearest 50 of points on the walls of a cube, asked for from anywhere on these walls.
+fn look_up_task(n_points: u32) -> Task {
+    let mut rng = Rng::new(1, 0);
+    let mut on_walls = |n: u32| -> Vec<Point3> {
+        (0..n)
+            .map(|k| {
+                let (u, wall) = (rng.next_point2(), (k / 3 % 2) as f32);
+                match k % 3 {
+                    0 => Point3::new(wall, u.x, u.y),
+                    1 => Point3::new(u.x, wall, u.y),
+                    _ => Point3::new(u.x, u.y, wall),
+                }
+            })
+            .collect()
+    };
+    let tree = PointTree::new(&on_walls(n_points));
+    let mut places = on_walls(n_points / 20);
+    // Neither sorted nor by walls, as paths ask.
+    for k in (1..places.len()).rev() {
+        places.swap(k, rng.next_below(k as u32 + 1) as usize);
+    }
+    Task::new("look-ups of 50 points", "look_ups", move || {
+        let find = |places: &[Point3]| {
+            let mut found = Neighbours::new();
+            for p in places {
+                tree.nearest(*p, NEIGHBOURS, f32::INFINITY, &mut found);
+            }
+            std::hint::black_box(&found);
+        };
+        places.par_chunks(CHUNK).for_each(find);
+        places.len() as u64
+    })
+}
+
+/// Numbers of the default sampler, in pairs: 64 for each sample of a row of pixels.
+fn random_numbers() -> u64 {
+    const DIMENSIONS: u32 = 64;
+    const SAMPLES: u32 = 16;
+    let settings = SamplerSettings { samples_per_pixel: SAMPLES, ..SamplerSettings::default() };
+    let pixels = 0..CHUNK as u32;
+    let n_pixels = u64::from(pixels.end);
+    pixels.into_par_iter().with_min_len(64).for_each(|x| {
+        for index in 0..SAMPLES {
+            let mut sampler = Sampler::new(&settings, [x, 0], u64::from(index));
+            for _ in 0..DIMENSIONS / 2 {
+                std::hint::black_box(sampler.next_2d());
+            }
+        }
+    });
+    n_pixels * u64::from(SAMPLES * DIMENSIONS)
+}
