@@ -24,9 +24,9 @@ pub(crate) struct Device {
 }
 
 impl Device {
-    /// Starts the library with so many threads for building.
-    pub(crate) fn new(n_threads: usize) -> Self {
-        let config = CString::new(format!("threads={n_threads}")).expect("there is no zero byte");
+    /// Starts the library with so many threads for building, and more settings separated by commas.
+    pub(crate) fn new(n_threads: usize, settings: &str) -> Self {
+        let config = CString::new(format!("threads={n_threads},{settings}")).expect("there is no zero byte");
         // SAFETY: the string lives during the call, and the monitor is a plain function without user data.
         let device = unsafe {
             let device = ffi::rtcNewDevice(config.as_ptr());

@@ -49,6 +49,9 @@ pub(crate) struct Arguments {
     /// Folder with the scene bmw-m6
     #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/scenes"))]
     scenes: PathBuf,
+    /// More settings of Embree, such as max_isa=avx2
+    #[arg(long, default_value = "")]
+    embree: String,
     /// Write the figures here, too
     #[arg(long)]
     json: Option<PathBuf>,
@@ -75,7 +78,7 @@ fn main() {
     let arguments = Arguments::parse();
     let n_threads =
         arguments.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, |n| n.get()));
-    let device = embree::Device::new(n_threads);
+    let device = embree::Device::new(n_threads, &arguments.embree);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().expect("threads start");
     let mut figures = Vec::new();
     for &mesh in &arguments.mesh {
