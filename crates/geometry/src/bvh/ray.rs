@@ -91,7 +91,6 @@ static PLANES: [[[usize; 3]; 2]; 8] = {
 #[inline(always)]
 fn axes_by_length([x, y, z, _]: [f32; 4]) -> [usize; 3] {
     static CYCLES: [[usize; 3]; 4] = [[1, 2, 0], [2, 0, 1], [0, 1, 2], [0, 1, 2]];
-    let y_exceeds_x = usize::from(y >= x);
-    let longer = if y >= x { y } else { x };
-    CYCLES[y_exceeds_x | usize::from(z >= longer) << 1]
+    let (y_exceeds_x, z_exceeds_x, z_exceeds_y) = (y >= x, z >= x, z >= y);
+    CYCLES[usize::from(y_exceeds_x) | usize::from(z_exceeds_x & z_exceeds_y) << 1]
 }
