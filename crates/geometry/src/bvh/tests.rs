@@ -7,6 +7,7 @@ use super::{TraversalRay, intersect_triangle};
 use crate::test_support::{any, ball, brute_force, cube, direction, point_in_cube, ray, single, soup};
 use crate::{Hit, Shape, TriangleMesh};
 use etendue_math::Transform;
+use rayon::prelude::*;
 
 fn slab(min: [f32; 3], max: [f32; 3], ray: &Ray, t_max: f32) -> bool {
     let mut node = Node::EMPTY;
@@ -258,23 +259,27 @@ fn both_kernels_find_the_same_hits() {
     let n_rays = if std::env::var_os("ETENDUE_SLOW").is_some_and(|v| v == "1") { 15_000_000 } else { 10_000 };
     let shapes =
         [cube(), ball(2), ball(6), grid(16), soup(3, 0.5, 1), soup(1500, 0.08, 2), soup(3000, 0.5, 3)];
-    let mut n_hits = 0;
-    for (i, mesh) in shapes.into_iter().enumerate() {
-        let (geometry, _) = single(Shape::Triangles(mesh.clone()), Transform::IDENTITY, false);
-        let (portable, _) = single(Shape::Triangles(mesh.clone()), Transform::IDENTITY, false);
-        let portable = portable.traced_portably();
-        let mut rng = Rng::new(17, i as u64);
-        for _ in 0..n_rays {
-            let ray = kernel_ray(&mut rng, &mesh);
-            let t_max = if rng.next_below(4) == 0 { rng.next_f32() } else { f32::INFINITY };
-            let hit = geometry.intersect(&ray, t_max, &any);
-            n_hits += usize::from(hit.is_some());
-            assert_eq!(hit, portable.intersect(&ray, t_max, &any), "{ray:?}");
-            assert_eq!(hit.is_some(), geometry.occluded(&ray, t_max, &any), "{ray:?}");
-            assert_eq!(hit.is_some(), portable.occluded(&ray, t_max, &any), "{ray:?}");
-        }
-    }
+    let n_hits: usize =
+        shapes.par_iter().enumerate().map(|(i, mesh)| same_hits(mesh, i as u64, n_rays)).sum();
     assert!(n_hits > n_rays, "{n_hits} hits");
+}
+
+/// Traces rays by both kernels; returns how many hit.
+fn same_hits(mesh: &TriangleMesh, seed: u64, n_rays: usize) -> usize {
+    let geometry = || single(Shape::Triangles(mesh.clone()), Transform::IDENTITY, false).0;
+    let (geometry, portable) = (geometry(), geometry().traced_portably());
+    let mut rng = Rng::new(17, seed);
+    let mut n_hits = 0;
+    for _ in 0..n_rays {
+        let ray = kernel_ray(&mut rng, mesh);
+        let t_max = if rng.next_below(4) == 0 { rng.next_f32() } else { f32::INFINITY };
+        let hit = geometry.intersect(&ray, t_max, &any);
+        n_hits += usize::from(hit.is_some());
+        assert_eq!(hit, portable.intersect(&ray, t_max, &any), "{ray:?}");
+        assert_eq!(hit.is_some(), geometry.occluded(&ray, t_max, &any), "{ray:?}");
+        assert_eq!(hit.is_some(), portable.occluded(&ray, t_max, &any), "{ray:?}");
+    }
+    n_hits
 }
 
 /// A ray in any direction, along an axis, or towards a vertex or the middle of an edge.
