@@ -52,8 +52,8 @@ impl TraversalRay {
         let axes = axes_by_length(direction.abs().to_array());
         let [x, y, z] = axes;
         let scale = 1.0 / d[z];
-        // A difference of equal numbers is 0 unless they are not finite.
-        let zeros = (origin - origin) + (direction - direction);
+        // What is not finite remains so, or becomes NaN.
+        let zeros = origin * Vec4::ZERO + direction * Vec4::ZERO;
         if zeros.cmpeq(Vec4::ZERO).bitmask() != 0b1111 || d[z] == 0.0 {
             return None;
         }
