@@ -21,7 +21,7 @@ use etendue_spectrum::{Sampled, Wavelengths};
 use crate::integrator::{Control, Integrator, PassEnd, Passes};
 use crate::lpe::{Event, LayerRecorder, PathExpressions};
 use crate::path::camera_pass::{CameraPass, CameraPath, Tracer, WavelengthMode};
-use crate::path::direct::{sample_light, visibility};
+use crate::path::direct::{Candidate, choose_light, visibility};
 use crate::path::mis::power_heuristic;
 use crate::path::roulette::survival_probability;
 
@@ -46,6 +46,8 @@ pub struct PathSettings {
     pub roulette_depth: u32,
     /// Directions in which a path goes on from each surface; 1 for path tracing, more to see why (SPEC PT-2).
     pub branches: u32,
+    /// Walks that share the way from the camera to the first surface that scatters widely.
+    pub splitting: u32,
     /// Widens narrow lobes after the first wide scattering event: less noise, biased.
     pub regularize: bool,
     /// How lights are found.
@@ -60,6 +62,7 @@ impl Default for PathSettings {
             max_depth: 5,
             roulette_depth: 1,
             branches: 1,
+            splitting: 1,
             regularize: false,
             lights: LightStrategy::default(),
             wavelengths: WavelengthMode::default(),
@@ -90,6 +93,13 @@ impl PathSettings {
             default: "1",
             unit: "",
             doc: "directions in which a path goes on from each surface; more than 1 only to compare with",
+        },
+        ParameterSpec {
+            name: "splitting",
+            kind: "integer",
+            default: "1",
+            unit: "",
+            doc: "walks that share the way from the camera to the first surface that scatters widely",
         },
         ParameterSpec {
             name: "regularize",
@@ -127,6 +137,7 @@ impl PathSettings {
         let max_depth = p.count("maxdepth", default.max_depth);
         let roulette_depth = p.count("roulettedepth", default.roulette_depth);
         let branches = p.count("branches", default.branches).max(1);
+        let splitting = p.count("splitting", default.splitting).max(1);
         let regularize = p.bool("regularize", false);
         let strategies = [
             ("both", LightStrategy::Both),
@@ -142,7 +153,7 @@ impl PathSettings {
         let wavelengths = p.choice("wavelengths", "hero", &modes);
         // Read where the scene is built.
         p.ignore("lightsampler");
-        Self { max_depth, roulette_depth, branches, regularize, lights, wavelengths }
+        Self { max_depth, roulette_depth, branches, splitting, regularize, lights, wavelengths }
     }
 
     /// The entity that gives these settings.
@@ -200,8 +211,10 @@ struct Walk<'s> {
     ray: Ray,
     /// Throughput: product of `f |cos| / pdf`, in radiance's measure.
     beta: Sampled,
-    /// Product of squared relative indices, so that roulette sees flux and not radiance.
-    eta_squared: f32,
+    /// What roulette multiplies the throughput by: the product of squared relative indices, so that it sees flux and not
+    /// radiance, and the number of walks among which the throughput was divided.
+    roulette_scale: f32,
+    has_split: bool,
     /// Scattering events so far.
     depth: u32,
     last: Option<LastScattering>,
@@ -215,7 +228,8 @@ impl<'s> Walk<'s> {
             settings,
             ray: path.ray,
             beta: Sampled::ONE,
-            eta_squared: 1.0,
+            roulette_scale: 1.0,
+            has_split: false,
             depth: 0,
             last: None,
             has_scattered_widely: false,
@@ -232,6 +246,9 @@ impl<'s> Walk<'s> {
             };
             let surface = scene.surface(&self.ray, &hit);
             self.add_emission(scene, &surface, path);
+            if self.is_over(scene, &surface) {
+                break;
+            }
             let Some(mut bsdf) = scene.bsdf(&surface, path.lambda) else {
                 // Light passes as if the surface were not there.
                 self.ray = surface.spawn_ray(self.ray.direction);
@@ -248,10 +265,11 @@ impl<'s> Walk<'s> {
             if self.settings.regularize && self.has_scattered_widely {
                 bsdf.regularize();
             }
-            path.sampler.start_vertex();
-            if self.settings.lights != LightStrategy::Scattering && bsdf.lobes().has_non_specular() {
-                self.add_direct_light(tracer, &surface, &bsdf, path);
+            if self.settings.splitting > 1 && !self.has_split && bsdf.lobes().has_non_specular() {
+                return self.split(tracer, &surface, &bsdf, path);
             }
+            path.sampler.start_vertex();
+            self.add_direct_light(tracer, &surface, &bsdf, path);
             if self.settings.branches > 1 {
                 return self.branch(tracer, &surface, &bsdf, path);
             }
@@ -260,6 +278,46 @@ impl<'s> Walk<'s> {
             }
         }
         self.radiance
+    }
+
+    /// True if the path may not scatter at this surface.
+    fn is_over(&self, scene: &Scene, surface: &Surface) -> bool {
+        let wants_features = self.depth == 0;
+        self.depth == self.settings.max_depth
+            && !wants_features
+            && !scene.materials.is_interface(surface.material)
+    }
+
+    /// Several walks from a surface, each with its share of the throughput: they have the way from the camera in common,
+    /// and the whole of them is spread as evenly as so many samples. Roulette takes no notice of the shares.
+    fn split(
+        self,
+        tracer: &Tracer<'_>,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        path: &mut CameraPath<'_, '_>,
+    ) -> Sampled {
+        let n = self.settings.splitting;
+        let position = path.layers.position();
+        let mut radiance = self.radiance;
+        for part in 0..n {
+            path.layers.return_to(&position);
+            let own = path.sampler_of_part(&tracer.scene.sampler, part, n);
+            let whole = std::mem::replace(path.sampler, own);
+            let mut walk = Walk {
+                beta: self.beta / n as f32,
+                roulette_scale: self.roulette_scale * n as f32,
+                has_split: true,
+                radiance: Sampled::ZERO,
+                ..self
+            };
+            path.sampler.start_vertex();
+            walk.add_direct_light(tracer, surface, bsdf, path);
+            radiance +=
+                if walk.goes_on(surface, bsdf, path) { walk.follow(tracer, path) } else { walk.radiance };
+            *path.sampler = whole;
+        }
+        radiance
     }
 
     /// Chooses where the path goes from a surface; `false` if it ends there.
@@ -352,20 +410,16 @@ impl<'s> Walk<'s> {
         bsdf: &Bsdf,
         path: &mut CameraPath<'_, '_>,
     ) {
-        let Some(light) = sample_light(tracer.scene, surface, path.sampler, path.lambda) else {
-            return;
-        };
-        let wi = light.sample.wi;
-        let (f_cos, pdf_scatter) = bsdf.eval_cos_and_pdf(surface.wo, wi);
-        let light_weight = light.weighted(match self.settings.lights {
-            LightStrategy::Both => pdf_scatter,
-            LightStrategy::Lights | LightStrategy::Scattering => 0.0,
-        });
-        let unoccluded = f_cos * light_weight;
-        if unoccluded.is_black() {
+        if self.settings.lights == LightStrategy::Scattering || !bsdf.lobes().has_non_specular() {
             return;
         }
-        let visible = visibility(tracer, surface, &light.sample);
+        let weighs = self.settings.lights == LightStrategy::Both;
+        let Some(Candidate { light, weighted, unoccluded, weight }) =
+            choose_light(tracer.scene, surface, bsdf, weighs, path.sampler, path.lambda)
+        else {
+            return;
+        };
+        let visible = visibility(tracer, surface, &light.sample) * weight;
         if visible == 0.0 {
             return;
         }
@@ -375,8 +429,9 @@ impl<'s> Walk<'s> {
             return;
         }
         let through_lobes = |lobes: Lobes| {
+            let wi = light.sample.wi;
             let f = bsdf.eval(surface.wo, wi, TransportMode::Radiance, lobes) * bsdf.abs_cos(wi);
-            through * (f * light_weight)
+            through * (f * weighted)
         };
         let (glossy, diffuse) = (through_lobes(Lobes::GLOSSY), through_lobes(Lobes::DIFFUSE));
         path.layers.emit_through(Event::glossy(bsdf.glossy_roughness()), glossy);
@@ -385,7 +440,7 @@ impl<'s> Walk<'s> {
 
     fn scatter(&mut self, surface: &Surface, sample: &BsdfSample, layers: &mut LayerRecorder<'_>) {
         self.beta *= sample.weight;
-        self.eta_squared *= sample.eta * sample.eta;
+        self.roulette_scale *= sample.eta * sample.eta;
         self.depth += 1;
         self.ray = surface.spawn_ray(sample.wi);
         let pdf_w = (!sample.is_specular()).then_some(sample.pdf_w);
@@ -400,7 +455,7 @@ impl<'s> Walk<'s> {
         if self.depth <= self.settings.roulette_depth {
             return true;
         }
-        let probability = survival_probability(self.beta.max_value() * self.eta_squared);
+        let probability = survival_probability(self.beta.max_value() * self.roulette_scale);
         if probability == 1.0 {
             return true;
         }

@@ -8,6 +8,9 @@ pub struct PiecewiseConstant1 {
     func: Vec<f32>,
     /// Distribution function at the n + 1 cell borders: 0 to 1.
     cdf: Vec<f32>,
+    /// For each of n equal steps of the distribution function, the cell where it begins (Chen and Asau 1974): where a
+    /// search starts that then has one or two cells to go.
+    guide: Vec<u32>,
     min: f32,
     max: f32,
     integral: f32,
@@ -34,8 +37,11 @@ impl PiecewiseConstant1 {
             cdf.push(share as f32);
         }
         cdf[n] = 1.0;
+        let begin =
+            |step| cdf.partition_point(|c| *c <= step as f32 / n as f32).saturating_sub(1).min(n - 1) as u32;
+        let guide = (0..n).map(begin).collect();
         let integral = (total * f64::from(max - min) / n as f64) as f32;
-        Self { func, cdf, min, max, integral }
+        Self { func, cdf, guide, min, max, integral }
     }
 
     /// Integral of |func| over the interval.
@@ -71,12 +77,26 @@ impl PiecewiseConstant1 {
     /// Place in [0, 1) within the interval, and the cell.
     #[inline]
     pub(super) fn sample_unit(&self, u: f32) -> (f32, usize) {
-        // The last cell that begins at or below u has a positive share: equal borders are skipped.
-        let offset = (self.cdf.partition_point(|c| *c <= u) - 1).min(self.func.len() - 1);
+        let offset = self.cell_of_share(u);
         let (low, high) = (self.cdf[offset], self.cdf[offset + 1]);
         let within = if high > low { (u - low) / (high - low) } else { 0.0 };
         let place = (offset as f32 + within.min(ONE_MINUS_EPSILON)) / self.func.len() as f32;
         (place.min(ONE_MINUS_EPSILON), offset)
+    }
+
+    /// The last cell that begins at or below `u`: of positive share, since equal borders are skipped.
+    #[inline]
+    fn cell_of_share(&self, u: f32) -> usize {
+        let last = self.func.len() - 1;
+        let mut cell = self.guide[((u * self.func.len() as f32) as usize).min(last)] as usize;
+        while cell < last && self.cdf[cell + 1] <= u {
+            cell += 1;
+        }
+        // Rounding may have put u into the next step.
+        while cell > 0 && self.cdf[cell] > u {
+            cell -= 1;
+        }
+        cell
     }
 
     #[inline]

@@ -139,3 +139,22 @@ fn dark_windows_give_nothing() {
     let outside = Bounds2::new(Point2::new(2.0, 0.0), Point2::new(3.0, 1.0));
     assert_eq!(d.sample(Point2::new(0.5, 0.5), outside), None);
 }
+
+/// The guided search finds the cell that a search from the start would, however uneven the density.
+#[test]
+fn cells_are_found_by_guide() {
+    let mut rng = Rng::new(7, 0);
+    for n in [1, 2, 3, 100, 777] {
+        let func: Vec<f32> = (0..n).map(|_| (rng.next_f32() * 8.0 - 4.0).max(0.0).powi(12)).collect();
+        let d = PiecewiseConstant1::new(&func, 0.0, n as f32);
+        let steps = (0..n).map(|i| i as f32 / n as f32);
+        for u in steps.chain((0..2000).map(|_| rng.next_f32())).collect::<Vec<f32>>() {
+            let cell = d.sample(u).2;
+            let share = |c: usize| d.invert(c as f32).expect("within the interval");
+            assert!(
+                share(cell) <= u && (cell + 1 == n || u < share(cell + 1)),
+                "{n} cells: {u} is not in {cell}"
+            );
+        }
+    }
+}

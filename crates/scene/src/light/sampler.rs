@@ -45,17 +45,38 @@ impl LightSampler {
         }
     }
 
-    /// A light for the point `reference`, with its probability; `None` if no light can contribute.
+    /// Groups of lights that are sampled apart; a point is lit by the sum of them.
     #[inline]
     #[must_use]
-    pub fn sample(&self, reference: &Reference, u: f32) -> Option<(LightId, f32)> {
+    pub fn n_groups(&self) -> usize {
         match self {
-            Self::Tree(tree) => tree.sample(reference, u),
+            Self::Tree(tree) => tree.n_groups(),
+            Self::Uniform(_) | Self::Power(_) => 1,
+        }
+    }
+
+    /// False if no group has lights to choose between, so that [`sample`](Self::sample) makes no use of its number.
+    #[inline]
+    #[must_use]
+    pub fn uses_number(&self) -> bool {
+        match self {
+            Self::Tree(tree) => tree.has_lamps(),
+            Self::Uniform(_) | Self::Power(_) => true,
+        }
+    }
+
+    /// A light of a group for the point `reference`, with its probability within the group; `None` if none of it can
+    /// contribute.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, group: usize, reference: &Reference, u: f32) -> Option<(LightId, f32)> {
+        match self {
+            Self::Tree(tree) => tree.sample(group, reference, u),
             _ => self.sample_anywhere(u),
         }
     }
 
-    /// Probability with which [`sample`](Self::sample) takes `light`.
+    /// Probability with which [`sample`](Self::sample) takes `light` of its group.
     #[inline]
     #[must_use]
     pub fn pmf(&self, reference: &Reference, light: LightId) -> f32 {

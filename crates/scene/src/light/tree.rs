@@ -97,27 +97,26 @@ impl LightTree {
         Self { nodes: builder.nodes, infinite, places: builder.places }
     }
 
-    /// Probability to take a light at infinity.
+    /// Groups of lights that are sampled apart: the tree, and each light at infinity.
     #[inline]
-    fn infinite_probability(&self) -> f32 {
-        if self.infinite.is_empty() {
-            return 0.0;
-        }
-        let finite = if self.nodes.is_empty() { 0 } else { 1 };
-        self.infinite.len() as f32 / (self.infinite.len() + finite) as f32
+    #[must_use]
+    pub fn n_groups(&self) -> usize {
+        self.infinite.len() + usize::from(self.has_lamps())
     }
 
-    /// A light for the point `reference`, with its probability.
+    /// True if any light has a place.
+    #[inline]
+    pub(super) fn has_lamps(&self) -> bool {
+        !self.nodes.is_empty()
+    }
+
+    /// A light of a group for the point `reference`, with its probability within the group.
     #[must_use]
-    pub fn sample(&self, reference: &Reference, u: f32) -> Option<(LightId, f32)> {
-        let p_infinite = self.infinite_probability();
-        if u < p_infinite {
-            let n = self.infinite.len();
-            let index = ((u / p_infinite * n as f32) as usize).min(n - 1);
-            return Some((self.infinite[index], p_infinite / n as f32));
+    pub fn sample(&self, group: usize, reference: &Reference, mut u: f32) -> Option<(LightId, f32)> {
+        if let Some(id) = self.infinite.get(group) {
+            return Some((*id, 1.0));
         }
-        let mut u = ((u - p_infinite) / (1.0 - p_infinite)).clamp(0.0, ONE_MINUS_EPSILON);
-        let mut pmf = 1.0 - p_infinite;
+        let mut pmf = 1.0;
         let mut node = self.nodes.first()?;
         loop {
             let (weights, sum) = node.weights(reference);
@@ -135,15 +134,15 @@ impl LightTree {
         }
     }
 
-    /// Probability with which [`sample`](Self::sample) takes `light`.
+    /// Probability with which [`sample`](Self::sample) takes `light` of its group.
     #[must_use]
     pub fn pmf(&self, reference: &Reference, light: LightId) -> f32 {
         let mut trail = match self.places[light.0 as usize] {
             Place::Dark => return 0.0,
-            Place::Infinite => return self.infinite_probability() / self.infinite.len() as f32,
+            Place::Infinite => return 1.0,
             Place::Trail(trail) => trail,
         };
-        let mut pmf = 1.0 - self.infinite_probability();
+        let mut pmf = 1.0;
         let mut node = &self.nodes[0];
         loop {
             let (weights, sum) = node.weights(reference);

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use etendue_geometry::Hit;
-use etendue_math::{Point2, Ray, Sampler};
+use etendue_math::{Point2, Ray, Sampler, SamplerSettings, hash64};
 use etendue_scene::camera::CameraRay;
 use etendue_scene::film::{Features, FilmTile, PixelSample, TileSamples};
 use etendue_scene::{Film, Scene};
@@ -156,6 +156,8 @@ impl CameraPass<'_> {
         if let Some(CameraRay { ray, weight }) = scene.camera.sample_ray(p_film, u_lens, u_time) {
             let mut path = CameraPath {
                 ray,
+                pixel,
+                pass,
                 lambda: &mut lambda,
                 sampler: &mut sampler,
                 layers,
@@ -182,6 +184,10 @@ impl CameraPass<'_> {
 pub struct CameraPath<'p, 'e> {
     /// The ray from the camera.
     pub ray: Ray,
+    /// The pixel it belongs to.
+    pub pixel: [u32; 2],
+    /// Its number among the pixel's samples.
+    pub pass: u64,
     /// Its wavelengths; dispersion reduces them.
     pub lambda: &'p mut Wavelengths,
     /// The numbers of this sample.
@@ -190,4 +196,16 @@ pub struct CameraPath<'p, 'e> {
     pub layers: &'p mut LayerRecorder<'e>,
     /// Features of the first surface, if the film wants them.
     pub features: Option<&'p mut Features>,
+}
+
+impl CameraPath<'_, '_> {
+    /// The numbers of one of `n` parts into which every path of the image splits: those of all parts of all passes of a
+    /// pixel are a pattern of their own, as evenly spread as so many samples.
+    #[must_use]
+    pub fn sampler_of_part(&self, settings: &SamplerSettings, part: u32, n: u32) -> Sampler {
+        let seed = hash64(&[settings.seed, u64::from(n)]);
+        let samples_per_pixel = settings.samples_per_pixel.saturating_mul(n);
+        let settings = SamplerSettings { seed, samples_per_pixel, ..*settings };
+        Sampler::new(&settings, self.pixel, self.pass * u64::from(n) + u64::from(part))
+    }
 }

@@ -3,8 +3,9 @@
 //! One light is chosen, one point or direction of it, and a shadow ray tells whether it is seen:
 //! `f(wo, wi) |cos| L_e V / (pmf pdf_w)`, weighted against the chance that scattering finds the same direction.
 
-use etendue_math::Sampler;
+use etendue_math::{Point2, Sampler};
 use etendue_scene::Scene;
+use etendue_scene::bsdf::Bsdf;
 use etendue_scene::light::LightSample;
 use etendue_scene::scene::Surface;
 use etendue_spectrum::{Sampled, Wavelengths};
@@ -21,18 +22,70 @@ pub struct DirectLight {
     pub pdf_w: f32,
 }
 
-/// Chooses a light and a direction to it. Always takes the same number of random numbers.
-#[inline]
+/// A light's sample that was chosen for a shadow ray.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidate {
+    /// The light.
+    pub light: DirectLight,
+    /// Its radiance per density, weighted against scattering.
+    pub weighted: Sampled,
+    /// What the surface sends on of it if nothing is in between.
+    pub unoccluded: Sampled,
+    /// What to multiply it by, for it stands for all candidates: one over the probability of the choice.
+    pub weight: f32,
+}
+
+/// Samples each group of lights, and chooses one of the samples in proportion to what the surface would send on of it:
+/// resampled importance sampling (Talbot, Cline and Egbert 2005) of one shadow ray. Each group's sample is an unbiased
+/// estimate of the group's light, weighted against scattering by its own density; the choice keeps the expectation of
+/// their sum, and that they share their random numbers does not matter to it. Always takes as many numbers.
 #[must_use]
-pub fn sample_light(
+pub fn choose_light(
     scene: &Scene,
     surface: &Surface,
+    bsdf: &Bsdf,
+    weighs_scattering: bool,
     sampler: &mut Sampler,
     lambda: &Wavelengths,
+) -> Option<Candidate> {
+    let n_groups = scene.light_sampler.n_groups();
+    let (u_light, u_place) = (sampler.next_1d(), sampler.next_2d());
+    // A number of its own for the choice, where one is taken.
+    let mut u = if n_groups > 1 && scene.light_sampler.uses_number() { sampler.next_1d() } else { u_light };
+    let (mut chosen, mut sum, mut chosen_share) = (None, 0.0, 0.0);
+    for group in 0..n_groups {
+        let Some(light) = sample_light(scene, group, surface, (u_light, u_place), lambda) else { continue };
+        let (f_cos, pdf_scatter) = bsdf.eval_cos_and_pdf(surface.wo, light.sample.wi);
+        let weighted = light.weighted(if weighs_scattering { pdf_scatter } else { 0.0 });
+        let unoccluded = f_cos * weighted;
+        let share = unoccluded.average();
+        if share <= 0.0 || !share.is_finite() {
+            continue;
+        }
+        sum += share;
+        let p = share / sum;
+        if u < p {
+            u /= p;
+            chosen_share = share;
+            chosen = Some(Candidate { light, weighted, unoccluded, weight: 1.0 });
+        } else {
+            u = (u - p) / (1.0 - p);
+        }
+    }
+    chosen.map(|candidate| Candidate { weight: sum / chosen_share, ..candidate })
+}
+
+/// Chooses a light of a group and a direction to it.
+#[inline]
+fn sample_light(
+    scene: &Scene,
+    group: usize,
+    surface: &Surface,
+    (u_light, u): (f32, Point2),
+    lambda: &Wavelengths,
 ) -> Option<DirectLight> {
-    let (u_light, u) = (sampler.next_1d(), sampler.next_2d());
     let reference = surface.reference();
-    let (light, pmf) = scene.light_sampler.sample(&reference, u_light)?;
+    let (light, pmf) = scene.light_sampler.sample(group, &reference, u_light)?;
     let sample = scene.light(light).sample_li(&scene.light_context(), &reference, u, lambda)?;
     let pdf_w = pmf * sample.pdf_w;
     (pdf_w > 0.0 && !sample.le.is_black()).then_some(DirectLight { sample, pdf_w })

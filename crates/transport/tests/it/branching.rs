@@ -1,4 +1,4 @@
-//! One ray for each bounce against several (SPEC PT-2, EXP-46).
+//! One ray for each bounce against several (SPEC PT-2, EXP-46), and walks that share their way from the camera.
 
 use crate::strategies::{FRONT, blocks, ceiling_light, count_rays, open_box};
 use crate::support::{Setup, expect_equal_pixels, expect_same_image, layer, luminance, render_layers};
@@ -46,4 +46,34 @@ fn branches_keep_their_letters() {
     let sum: Vec<f64> = (0..image.len()).map(|i| bounces.iter().map(|b| b[i]).sum()).collect();
     expect_equal_pixels("sum of bounces", &sum, &image, 1e-5);
     assert!(bounces[3].iter().sum::<f64>() > 0.0);
+}
+
+/// Walks that share the way from the camera to the first surface give the same image with less variance; the first ray
+/// is traced once, and roulette ends as many of them as of whole paths.
+#[test]
+fn walks_that_split_at_the_first_surface() {
+    let world = open_box(&ceiling_light(0.4));
+    let integrator = |n: u32| format!("\"integer maxdepth\" 4 \"integer splitting\" {n}");
+    let render = |n| blocks(&format!("splitting {n}"), &world, &integrator(n), 120);
+    let (one, four) = (render(1), render(4));
+    expect_same_image("one walk and four", &one, &four, 0.05);
+    let whole = one.len() - 1;
+    assert!(four[whole].variance() < one[whole].variance());
+    let (rays_of_one, rays_of_four) =
+        (count_rays(&world, &integrator(1)), count_rays(&world, &integrator(4)));
+    assert!(3 * rays_of_one < rays_of_four && rays_of_four < 4 * rays_of_one, "{rays_of_one} {rays_of_four}");
+}
+
+/// Walks that split find their own ways for path expressions too.
+#[test]
+fn walks_that_split_keep_their_letters() {
+    let world = open_box(&ceiling_light(0.4));
+    let integrator = "\"integer maxdepth\" 3 \"integer splitting\" 3";
+    let setup = Setup { size: [8, 8], integrator, camera: FRONT, world: &world, ..Setup::default() };
+    let expressions = [("direct", "L.?E"), ("indirect", "L..(S|D)*E")];
+    let film = render_layers(&setup.scene("letters of walks"), 0..8, &expressions);
+    let (direct, indirect) = (layer(&film, "direct"), layer(&film, "indirect"));
+    let sum: Vec<f64> = direct.iter().zip(&indirect).map(|(a, b)| a + b).collect();
+    expect_equal_pixels("sum of layers", &sum, &luminance(&film), 1e-5);
+    assert!(indirect.iter().sum::<f64>() > 0.0);
 }

@@ -219,6 +219,22 @@ fn light_samplers_agree() {
     expect_same_image("uniform and bvh", &uniform, &tree, 0.08);
 }
 
+/// A sun and a sky are both asked at every point, though one shadow ray is traced: the same image as by drawing one of
+/// them blindly, and less variance.
+#[test]
+fn lights_at_infinity_are_all_asked() {
+    let sun = format!("LightSource \"distant\" {} \"point3 from\" [0.3 0.4 -1]\n", lit("L", 3.0));
+    let world = open_box(&format!("LightSource \"infinite\" {}\n{sun}", lit("L", 0.2)));
+    let render = |sampler: &str| {
+        let integrator = format!("\"integer maxdepth\" 2 \"string lightsampler\" \"{sampler}\"");
+        blocks(&format!("sun and sky by {sampler}"), &world, &integrator, 200)
+    };
+    let (uniform, tree) = (render("uniform"), render("bvh"));
+    expect_same_image("uniform and bvh", &uniform, &tree, 0.05);
+    let whole = uniform.len() - 1;
+    assert!(tree[whole].variance() < uniform[whole].variance());
+}
+
 /// Over a long floor under a row of lamps, a point is lit by those near it: choosing by place has a fraction of the
 /// variance of choosing blindly, and the same mean.
 #[test]

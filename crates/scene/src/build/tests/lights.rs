@@ -82,7 +82,7 @@ fn darkness_is_a_warning() {
     assert!(problem.severity == Severity::Warning && problem.message.contains("no lights"));
     let scene = scene.expect("a warning leaves a scene");
     let reference = Reference { p: Point3::ORIGIN, n: None };
-    assert!(scene.light_sampler.sample(&reference, 0.5).is_none());
+    assert!(scene.light_sampler.sample(0, &reference, 0.5).is_none());
 }
 
 /// An area light of an unknown kind is an error, and its unknown parameters are warnings, once for all shapes.

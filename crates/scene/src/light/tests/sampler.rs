@@ -60,7 +60,8 @@ const KINDS: [LightSamplerKind; 3] =
 
 #[test]
 fn probabilities_of_lights_sum_to_one() {
-    // One of the lights is taken, unless none can contribute (a tree may find that out on the way down).
+    // One of the lights of a group is taken, unless none can contribute (a tree may find that out on the way down). For
+    // trees, the two lights at infinity are groups of their own.
     let world = random_world("sum", 100);
     let mut rng = rng("sum references");
     for kind in KINDS {
@@ -70,7 +71,8 @@ fn probabilities_of_lights_sum_to_one() {
             let ids = (0..world.lights.len() as u32).map(LightId);
             let sum: f64 = ids.map(|id| f64::from(sampler.pmf(&reference, id))).sum();
             if kind == LightSamplerKind::Tree {
-                assert!(sum < 1.0 + 1e-4 && sum > 0.8, "{kind:?}: {sum}");
+                assert_eq!(sampler.n_groups(), 3);
+                assert!(sum < 3.0 + 1e-4 && sum > 2.4, "{kind:?}: {sum}");
             } else {
                 assert!((sum - 1.0).abs() < 1e-4, "{kind:?}: {sum}");
             }
@@ -95,14 +97,15 @@ fn probabilities_sum_to_one_in_a_tree_of_lamps_that_shine_everywhere() {
     for _ in 0..50 {
         let reference = random_reference(&mut rng);
         let sum: f64 = (0..201).map(|i| f64::from(sampler.pmf(&reference, LightId(i)))).sum();
-        assert!((sum - 1.0).abs() < 1e-4, "{sum}");
-        assert_eq!(sampler.pmf(&reference, sky), 0.5);
+        assert!((sum - 2.0).abs() < 1e-4, "{sum}");
+        assert_eq!(sampler.sample(0, &reference, 0.3), Some((sky, 1.0)));
+        assert_eq!(sampler.pmf(&reference, sky), 1.0);
     }
 }
 
 #[test]
 fn lights_are_taken_as_often_as_their_probability_says() {
-    // The histogram of sampled lights matches pmf, and each sample carries its own pmf.
+    // The histogram of sampled lights of the last group matches pmf, and each sample carries its own pmf.
     let world = random_world("histogram", 40);
     let mut rng = rng("histogram numbers");
     for kind in KINDS {
@@ -110,9 +113,12 @@ fn lights_are_taken_as_often_as_their_probability_says() {
         for _ in 0..3 {
             let reference = random_reference(&mut rng);
             const N: usize = 50_000;
+            let last = sampler.n_groups() - 1;
+            let is_in_group =
+                |id: &LightId| last == 0 || world.lights[id.0 as usize].bounds(&world.context()).is_some();
             let mut observed = vec![0.0; world.lights.len() + 1];
             for _ in 0..N {
-                let Some((id, pmf)) = sampler.sample(&reference, rng.next_f32()) else {
+                let Some((id, pmf)) = sampler.sample(last, &reference, rng.next_f32()) else {
                     observed[world.lights.len()] += 1.0;
                     continue;
                 };
@@ -120,8 +126,8 @@ fn lights_are_taken_as_often_as_their_probability_says() {
                 assert_close(f64::from(pmf), f64::from(sampler.pmf(&reference, id)), 1e-5);
             }
             let ids = (0..world.lights.len() as u32).map(LightId);
-            let mut expected: Vec<f64> =
-                ids.map(|id| N as f64 * f64::from(sampler.pmf(&reference, id))).collect();
+            let share = |id| if is_in_group(&id) { f64::from(sampler.pmf(&reference, id)) } else { 0.0 };
+            let mut expected: Vec<f64> = ids.map(|id| N as f64 * share(id)).collect();
             let none = (N as f64 - expected.iter().sum::<f64>()).max(0.0);
             expected.push(if none < 0.5 { 0.0 } else { none });
             let outcome = chi_square_test(&observed, &expected, 5.0, SIGNIFICANCE);
@@ -215,14 +221,14 @@ fn samplers_bear_no_lights_dark_lights_and_a_single_light() {
     let reference = at(Point3::new(1.0, 2.0, 3.0));
     for kind in KINDS {
         let sampler = |world: &World| LightSampler::new(kind, &world.lights, &world.context());
-        assert!(sampler(&none).sample(&reference, 0.5).is_none());
+        assert!(sampler(&none).sample(0, &reference, 0.5).is_none());
         if kind != LightSamplerKind::Uniform {
-            assert!(sampler(&dark).sample(&reference, 0.5).is_none());
+            assert!(sampler(&dark).sample(0, &reference, 0.5).is_none());
             assert_eq!(sampler(&dark).pmf(&reference, LightId(0)), 0.0);
         }
         for world in [&single, &sky] {
             for u in [0.0, 0.3, 0.999_999_94] {
-                assert_eq!(sampler(world).sample(&reference, u), Some((LightId(0), 1.0)));
+                assert_eq!(sampler(world).sample(0, &reference, u), Some((LightId(0), 1.0)));
             }
             assert_eq!(sampler(world).pmf(&reference, LightId(0)), 1.0);
         }
