@@ -10,6 +10,7 @@
 mod build;
 mod lanes;
 mod node;
+mod pages;
 mod pair;
 mod ray;
 mod refit;

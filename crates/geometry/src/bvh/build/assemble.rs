@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::TriangleSource;
 use super::primitive::BuildPrimitive;
 use crate::bvh::node::{EMPTY, INNER, ITEMS, Node, TRIANGLES, leaf, leaf_range, node_index};
+use crate::bvh::pages::vec_in_large_pages;
 use crate::bvh::pair::Pair;
 use crate::bvh::triangle_block::TriangleBlock;
 use crate::bvh::{Bvh, PrimitiveRef};
@@ -18,7 +19,7 @@ pub(super) fn assemble(
     bounds: Bounds3,
     source: &impl TriangleSource,
 ) -> Bvh {
-    let mut nodes: Vec<Node> = Vec::with_capacity(chunks.iter().map(Vec::len).sum());
+    let mut nodes: Vec<Node> = vec_in_large_pages(chunks.iter().map(Vec::len).sum());
     let mut leaves = Leaves { blocks: Vec::with_capacity(primitives.len() / 3), items: Vec::new() };
     for chunk in chunks {
         for mut node in chunk {
@@ -42,7 +43,8 @@ pub(super) fn assemble(
         }
         block
     };
-    let blocks = leaves.blocks.par_iter().with_min_len(256).map(block).collect();
+    let mut blocks = vec_in_large_pages(leaves.blocks.len());
+    leaves.blocks.par_iter().with_min_len(256).map(block).collect_into_vec(&mut blocks);
     leaves.items.shrink_to_fit();
     Bvh::new(nodes, blocks, leaves.items, bounds)
 }
