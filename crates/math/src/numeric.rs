@@ -5,7 +5,7 @@
 #[must_use]
 pub fn safe_sqrt(x: f32) -> f32 {
     debug_assert!(x >= -1e-3 || x.is_nan(), "sqrt of {x}");
-    x.max(0.0).sqrt()
+    if x > 0.0 { x.sqrt() } else { 0.0 }
 }
 
 /// `acos` of a value that only rounding can push outside [-1, 1].

@@ -149,7 +149,7 @@ impl Entity {
     }
 
     /// The point of a hit of `ray`, before rounding too.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn point(&self, primitive: u32, ray: &Ray, t: f32, uv: [f32; 2]) -> (DVec3, SurfacePoint) {
         if let Self::Triangles(triangles) = self {
             return triangles.point(primitive, uv);

@@ -135,7 +135,7 @@ impl Triangles {
     }
 
     /// The point at barycentric weights, before rounding too.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn point(&self, triangle: u32, b: [f32; 2]) -> (DVec3, SurfacePoint) {
         let corners = self.corners(triangle);
         let weights = [1.0 - b[0] - b[1], b[0], b[1]];
