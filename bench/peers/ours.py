@@ -1,7 +1,6 @@
 """Runs Étendue on a prepared copy of a scene and measures processor seconds."""
 import json
 import os
-import resource
 import subprocess
 import tempfile
 
@@ -10,7 +9,7 @@ import numpy as np
 from pbrt_scene import with_settings
 
 
-def prepare(scene_path, folder, sampler, spp, depth, seed=None, options=""):
+def prepare(scene_path, folder, sampler, spp, depth):
     """Writes the scene with a box filter, sampler and depth of the comparison; its files are linked beside it."""
     source = os.path.dirname(os.path.abspath(scene_path))
     os.makedirs(folder, exist_ok=True)

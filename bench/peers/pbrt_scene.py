@@ -150,7 +150,7 @@ def read_scene(path):
     return scene, named
 
 
-def with_settings(text, sampler, spp, depth, lines=()):
+def with_settings(text, sampler, spp, depth):
     """The scene's text with a box filter, this sampler and this depth in place of its own."""
     for keyword in ("Sampler", "PixelFilter", "Integrator"):
         text = re.sub(rf'^{keyword}\s+"\w+"\s*((\s*"\w+ \w+"\s*(\[[^\]]*\]|[^\s\[\]]+))*)', "", text, flags=re.M)
@@ -159,4 +159,4 @@ def with_settings(text, sampler, spp, depth, lines=()):
         f'Sampler "{sampler}" "integer pixelsamples" [ {spp} ]',
         'PixelFilter "box" "float xradius" [ 0.5 ] "float yradius" [ 0.5 ]',
     ]
-    return "\n".join([*head, *lines, text])
+    return "\n".join([*head, text])
