@@ -38,7 +38,7 @@ impl Geometry {
 impl FlatTriangle {
     /// A point as seen from `reference`, its density per steradian, and the weights of the second and third corner. The
     /// sample has no texture coordinates.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn sample_from(&self, reference: &Reference, u: Point2) -> Option<(ShapeSample, f32, [f32; 2])> {
         let spherical = self.spherical(reference.p);
@@ -62,7 +62,7 @@ impl FlatTriangle {
     }
 
     /// The density per steradian of [`sample_from`](Self::sample_from) for a point `p` of the triangle.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn pdf_from(&self, reference: &Reference, p: Point3) -> f32 {
         match self.spherical(reference.p) {
@@ -71,13 +71,13 @@ impl FlatTriangle {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn spherical(&self, p: Point3) -> Option<SphericalTriangle> {
         SphericalTriangle::new(self.corners, p)
             .filter(|spherical| SPHERICAL_SAMPLING.contains(&spherical.solid_angle()))
     }
 
-    #[inline]
+    #[inline(always)]
     fn pdf_a(&self) -> f32 {
         let [a, b, c] = self.corners;
         2.0 / (b - a).cross(c - a).length()

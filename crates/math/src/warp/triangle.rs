@@ -67,7 +67,7 @@ pub struct SphericalTriangle {
 
 impl SphericalTriangle {
     /// The triangle `v` as seen from `p`; `None` if it fills no solid angle.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn new(v: [Point3; 3], p: Point3) -> Option<Self> {
         let [a, b, c] = v.map(|v| v - p);
@@ -97,7 +97,7 @@ impl SphericalTriangle {
     }
 
     /// Barycentric coordinates of a point of the triangle, uniform by solid angle.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn sample(&self, u: Point2) -> [f32; 3] {
         let [ia, ib, ic] = self.distances.map(f32::recip);

@@ -204,7 +204,7 @@ impl AreaLight {
     }
 
     /// A point as seen from `reference`, with its density per steradian; with texture coordinates if `varies`.
-    #[inline]
+    #[inline(always)]
     fn sample_point(
         &self,
         context: &LightContext,
@@ -245,7 +245,7 @@ impl AreaLight {
         self.emission(context).le(context, ng, uv, wo, lambda)
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn sample_li(
         &self,
         context: &LightContext,

@@ -39,6 +39,7 @@ pub struct Candidate {
 /// resampled importance sampling (Talbot, Cline and Egbert 2005) of one shadow ray. Each group's sample is an unbiased
 /// estimate of the group's light, weighted against scattering by its own density; the choice keeps the expectation of
 /// their sum, and that they share their random numbers does not matter to it. Always takes as many numbers.
+#[inline]
 #[must_use]
 pub fn choose_light(
     scene: &Scene,
@@ -50,15 +51,21 @@ pub fn choose_light(
 ) -> Option<Candidate> {
     let n_groups = scene.light_sampler.n_groups();
     let (u_light, u_place) = (sampler.next_1d(), sampler.next_2d());
-    // A number of its own for the choice, where one is taken.
-    let mut u = if n_groups > 1 && scene.light_sampler.uses_number() { sampler.next_1d() } else { u_light };
-    let (mut chosen, mut sum, mut chosen_share) = (None, 0.0, 0.0);
-    for group in 0..n_groups {
-        let Some(light) = sample_light(scene, group, surface, (u_light, u_place), lambda) else { continue };
+    let candidate = |group: usize| {
+        let light = sample_light(scene, group, surface, (u_light, u_place), lambda)?;
         let (f_cos, pdf_scatter) = bsdf.eval_cos_and_pdf(surface.wo, light.sample.wi);
         let weighted = light.weighted(if weighs_scattering { pdf_scatter } else { 0.0 });
         let unoccluded = f_cos * weighted;
-        let share = unoccluded.average();
+        (!unoccluded.is_black()).then_some(Candidate { light, weighted, unoccluded, weight: 1.0 })
+    };
+    if n_groups == 1 {
+        return candidate(0);
+    }
+    // A number of its own for the choice, where one is taken.
+    let mut u = if scene.light_sampler.uses_number() { sampler.next_1d() } else { u_light };
+    let (mut chosen, mut sum, mut chosen_share) = (None, 0.0, 0.0);
+    for candidate in (0..n_groups).filter_map(candidate) {
+        let share = candidate.unoccluded.average();
         if share <= 0.0 || !share.is_finite() {
             continue;
         }
@@ -67,7 +74,7 @@ pub fn choose_light(
         if u < p {
             u /= p;
             chosen_share = share;
-            chosen = Some(Candidate { light, weighted, unoccluded, weight: 1.0 });
+            chosen = Some(candidate);
         } else {
             u = (u - p) / (1.0 - p);
         }
