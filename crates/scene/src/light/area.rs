@@ -260,7 +260,7 @@ impl AreaLight {
         let wi = to_light * (1.0 / distance);
         let le = emission.le(context, s.n, s.uv, -wi, lambda) * emission.coverage(context, s.p, s.n, s.uv);
         let is_valid = distance > 0.0 && pdf_w > 0.0 && pdf_w.is_finite();
-        (is_valid && !le.is_black()).then(|| LightSample {
+        (is_valid && !le.is_black()).then_some(LightSample {
             wi,
             le,
             pdf_w,
