@@ -5,6 +5,7 @@ use etendue_math::warp::{SphericalTriangle, sample_uniform_triangle};
 use etendue_math::{Normal3, Point2, Point3, Vector3};
 
 use crate::Geometry;
+use crate::double;
 use crate::hit::{GeometryId, Reference, ShapeSample};
 use crate::light_sampling::{SPHERICAL_SAMPLING, area_density, solid_angle_density};
 use crate::shape::entity::Entity;
@@ -28,7 +29,7 @@ impl Geometry {
         }
         let n = triangles.emission_cone(primitive).0;
         let corners = triangles.positions(primitive);
-        let size = corners.iter().map(|p| p.as_vector().abs().max_element()).fold(0.0, f32::max);
+        let size = double::largest_coordinate(&corners.map(double::point)) as f32;
         // Six roundings of numbers no larger than twice the coordinates.
         let p_error = 6.0 * f32::EPSILON * size + f32::MIN_POSITIVE;
         (n.as_vector().length_squared() > 0.0).then_some(FlatTriangle { corners, n, p_error })

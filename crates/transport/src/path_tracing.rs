@@ -246,9 +246,6 @@ impl<'s> Walk<'s> {
             };
             let surface = scene.surface(&self.ray, &hit);
             self.add_emission(scene, &surface, path);
-            if self.is_over(scene, &surface) {
-                break;
-            }
             let Some(mut bsdf) = scene.bsdf(&surface, path.lambda) else {
                 // Light passes as if the surface were not there.
                 self.ray = surface.spawn_ray(self.ray.direction);
@@ -280,16 +277,8 @@ impl<'s> Walk<'s> {
         self.radiance
     }
 
-    /// True if the path may not scatter at this surface.
-    fn is_over(&self, scene: &Scene, surface: &Surface) -> bool {
-        let wants_features = self.depth == 0;
-        self.depth == self.settings.max_depth
-            && !wants_features
-            && !scene.materials.is_interface(surface.material)
-    }
-
-    /// Several walks from a surface, each with its share of the throughput: they have the way from the camera in common,
-    /// and the whole of them is spread as evenly as so many samples. Roulette takes no notice of the shares.
+    /// Several walks from a surface: they have the way from the camera in common, and the whole of them is spread as evenly
+    /// as so many samples. Roulette takes no notice of the shares.
     fn split(
         self,
         tracer: &Tracer<'_>,
@@ -298,26 +287,58 @@ impl<'s> Walk<'s> {
         path: &mut CameraPath<'_, '_>,
     ) -> Sampled {
         let n = self.settings.splitting;
+        self.share(n, path, |part, mut walk, path| {
+            let own = path.sampler_of_part(&tracer.scene.sampler, part, n);
+            let whole = std::mem::replace(path.sampler, own);
+            walk.roulette_scale *= n as f32;
+            walk.has_split = true;
+            path.sampler.start_vertex();
+            walk.add_direct_light(tracer, surface, bsdf, path);
+            let radiance = walk.finish(tracer, surface, bsdf, path);
+            *path.sampler = whole;
+            radiance
+        })
+    }
+
+    /// Goes on in several directions. The rays of a pixel then grow as the power of the depth (SPEC PT-2), most of them
+    /// where they matter least: for comparison.
+    fn branch(
+        self,
+        tracer: &Tracer<'_>,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        path: &mut CameraPath<'_, '_>,
+    ) -> Sampled {
+        self.share(self.settings.branches, path, |_, walk, path| walk.finish(tracer, surface, bsdf, path))
+    }
+
+    /// What this walk has brought so far and what `n` others bring, which start with its state and a share of its
+    /// throughput. `follow` gets the number of each.
+    fn share(
+        self,
+        n: u32,
+        path: &mut CameraPath<'_, '_>,
+        follow: impl Fn(u32, Self, &mut CameraPath<'_, '_>) -> Sampled,
+    ) -> Sampled {
         let position = path.layers.position();
         let mut radiance = self.radiance;
         for part in 0..n {
             path.layers.return_to(&position);
-            let own = path.sampler_of_part(&tracer.scene.sampler, part, n);
-            let whole = std::mem::replace(path.sampler, own);
-            let mut walk = Walk {
-                beta: self.beta / n as f32,
-                roulette_scale: self.roulette_scale * n as f32,
-                has_split: true,
-                radiance: Sampled::ZERO,
-                ..self
-            };
-            path.sampler.start_vertex();
-            walk.add_direct_light(tracer, surface, bsdf, path);
-            radiance +=
-                if walk.goes_on(surface, bsdf, path) { walk.follow(tracer, path) } else { walk.radiance };
-            *path.sampler = whole;
+            let walk = Walk { beta: self.beta / n as f32, radiance: Sampled::ZERO, ..self };
+            radiance += follow(part, walk, path);
         }
         radiance
+    }
+
+    /// The radiance of a walk that stands at a surface whose direct light it has.
+    fn finish(
+        mut self,
+        tracer: &Tracer<'_>,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        path: &mut CameraPath<'_, '_>,
+    ) -> Sampled {
+        if self.goes_on(surface, bsdf, path) { self.follow(tracer, path) } else { self.radiance }
     }
 
     /// Chooses where the path goes from a surface; `false` if it ends there.
@@ -329,28 +350,6 @@ impl<'s> Walk<'s> {
         };
         self.scatter(surface, &sample, path.layers);
         self.survives_roulette(path)
-    }
-
-    /// Goes on in several directions, each with its share of the throughput. The rays of a pixel then grow as the power
-    /// of the depth (SPEC PT-2), most of them where they matter least: for comparison.
-    fn branch(
-        self,
-        tracer: &Tracer<'_>,
-        surface: &Surface,
-        bsdf: &Bsdf,
-        path: &mut CameraPath<'_, '_>,
-    ) -> Sampled {
-        let position = path.layers.position();
-        let mut radiance = self.radiance;
-        for _ in 0..self.settings.branches {
-            path.layers.return_to(&position);
-            let share = self.beta / self.settings.branches as f32;
-            let mut walk = Walk { beta: share, radiance: Sampled::ZERO, ..self };
-            if walk.goes_on(surface, bsdf, path) {
-                radiance += walk.follow(tracer, path);
-            }
-        }
-        radiance
     }
 
     /// Weight of light that scattering found, against the same light sampled from the last vertex.

@@ -1,5 +1,6 @@
 //! A shape in the space of its group, ready for intersection: one `match` per operation.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray, Transform, Vector3};
@@ -16,7 +17,6 @@ use crate::double;
 use crate::geometry::GeometryCounts;
 use crate::hit::{Reference, ShapeSample, SurfacePoint};
 use crate::mesh::{MeshError, check_vertices};
-use glam::DVec3;
 
 /// A placed shape.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@
 //! p_i - p_2 = dpdu (u_i - u_2) + dpdv (v_i - v_2). Positions are formed in double precision, so that their error
 //! is that of rounding them.
 
-use etendue_math::warp::SphericalTriangle;
+use etendue_math::warp::{SphericalTriangle, sample_uniform_triangle};
 use etendue_math::{Bounds3, Frame, Normal3, Point2, Point3, Transform, Vector3};
 use glam::DVec3;
 
@@ -226,9 +226,8 @@ impl Triangles {
         if area <= 0.0 || !area.is_finite() {
             return None;
         }
-        // A low-distortion map from the square (Heitz 2019).
-        let (b0, b1) = if u.x < u.y { (u.x / 2.0, u.y - u.x / 2.0) } else { (u.x - u.y / 2.0, u.y / 2.0) };
-        Some(self.sample_at(triangle, [b1, (1.0 - b0 - b1).max(0.0)], (1.0 / area) as f32))
+        let [_, b1, b2] = sample_uniform_triangle(u);
+        Some(self.sample_at(triangle, [b1, b2.max(0.0)], (1.0 / area) as f32))
     }
 
     #[inline]

@@ -347,9 +347,8 @@ impl FilmSums {
         }
         let color: [Channel; N_COLOR] = std::array::from_fn(|c| self.mean_channel(String::new(), c));
         let n = self.weights.len();
-        let luminance: Vec<f64> = (0..n)
-            .map(|i| (0..N_COLOR).map(|c| f64::from(self.luminance[c]) * f64::from(color[c].values[i])).sum())
-            .collect();
+        let luminance: Vec<f64> =
+            (0..n).map(|i| luminance(self.luminance, std::array::from_fn(|c| color[c].values[i]))).collect();
         let floor = 0.1 * luminance.iter().sum::<f64>() / n as f64;
         let variance = self.variance_channel().values;
         let terms = luminance.iter().zip(&variance).map(|(y, v)| {
