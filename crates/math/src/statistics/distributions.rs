@@ -228,3 +228,11 @@ pub fn sidak(alpha: f64, n: usize) -> f64 {
     // 1 - (1 - alpha)^(1/n) without cancellation.
     -((-alpha).ln_1p() / n.max(1) as f64).exp_m1()
 }
+
+/// The p-value of several independent tests together: that of the least of theirs, by Šidák's correction. 1 for none.
+#[must_use]
+pub fn combined_p_value(p_values: impl IntoIterator<Item = f64>) -> f64 {
+    let (least, n) = p_values.into_iter().fold((1.0_f64, 0), |(least, n), p| (least.min(p), n + 1));
+    // 1 - (1 - p)^n without cancellation.
+    if least < 1.0 { -(f64::from(n) * (-least).ln_1p()).exp_m1() } else { 1.0 }
+}

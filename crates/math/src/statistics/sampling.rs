@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use super::chi_square::chi_square_test;
 use super::cubature::{Rectangle, integrate_rectangle};
-use super::distributions::normal_quantile;
+use super::distributions::{combined_p_value, normal_cdf};
 use crate::{Point2, Rng, Vector3};
 
 /// Relative error allowed to the integral of a density in single precision.
@@ -26,10 +26,32 @@ const MIN_EXPECTED: f64 = 5.0;
 pub fn sphere_chi_square(
     samples: usize,
     seed: u64,
-    mut sample: impl FnMut(&mut Rng) -> Option<Vector3>,
+    sample: impl FnMut(&mut Rng) -> Option<Vector3>,
     pdf: impl Fn(Vector3) -> f32,
     significance: f64,
 ) -> Result<(), String> {
+    sphere_test(samples, seed, sample, pdf, significance).map(|_| ())
+}
+
+/// The probability of a disagreement at least as large as the one that [`sphere_chi_square`] finds, if all is right; 0
+/// if the samples are impossible.
+#[must_use]
+pub fn sphere_p_value(
+    samples: usize,
+    seed: u64,
+    sample: impl FnMut(&mut Rng) -> Option<Vector3>,
+    pdf: impl Fn(Vector3) -> f32,
+) -> f64 {
+    sphere_test(samples, seed, sample, pdf, 0.0).unwrap_or(0.0)
+}
+
+fn sphere_test(
+    samples: usize,
+    seed: u64,
+    mut sample: impl FnMut(&mut Rng) -> Option<Vector3>,
+    pdf: impl Fn(Vector3) -> f32,
+    significance: f64,
+) -> Result<f64, String> {
     // z and phi are coordinates of equal area.
     let domain = Grid {
         domain: Rectangle { x0: -1.0, x1: 1.0, y0: 0.0, y1: TAU },
@@ -66,7 +88,7 @@ pub fn square_chi_square(
     };
     let draw = |rng: &mut Rng| sample(rng).map(|p| [f64::from(p.x), f64::from(p.y)]);
     let density = |x: f64, y: f64| f64::from(pdf(Point2::new(x as f32, y as f32)));
-    chi_square_cells(samples, seed, draw, density, &domain, significance)
+    chi_square_cells(samples, seed, draw, density, &domain, significance).map(|_| ())
 }
 
 /// Tests `sample` against `pdf`, a density over the interval `range`, with `samples` numbers.
@@ -88,7 +110,7 @@ pub fn interval_chi_square(
         finest: [1e-6 * (range[1] - range[0]), 1.0],
     };
     let draw = |rng: &mut Rng| sample(rng).map(|x| [f64::from(x), 0.5]);
-    chi_square_cells(samples, seed, draw, |x, _| f64::from(pdf(x as f32)), &domain, significance)
+    chi_square_cells(samples, seed, draw, |x, _| f64::from(pdf(x as f32)), &domain, significance).map(|_| ())
 }
 
 /// Integral over the sphere of a function of direction, per steradian, to about `tolerance`.
@@ -229,7 +251,7 @@ fn share(
         + share(density, high, &above, finest, 0.7 * tolerance)
 }
 
-/// Tests samples of a domain against a density over it: see [`sphere_chi_square`].
+/// Tests samples of a domain against a density over it: see [`sphere_chi_square`]. Returns the p-value.
 ///
 /// # Errors
 /// If samples and density disagree at this significance, with a message for people.
@@ -240,7 +262,7 @@ pub fn chi_square_cells(
     density: impl Fn(f64, f64) -> f64,
     grid: &Grid,
     significance: f64,
-) -> Result<(), String> {
+) -> Result<f64, String> {
     let mut rng = Rng::new(seed, 0x51);
     let n_pilot = (samples / 4).max(1);
     let (pilot, _) = batch(n_pilot, grid, || draw(&mut rng))?;
@@ -256,15 +278,16 @@ pub fn chi_square_cells(
         .map(|leaf| share(&density, leaf.bounds, &leaf.counted, grid.finest, tolerance))
         .collect();
     let integral: f64 = shares.iter().sum();
-    check_mass(samples, n_none, integral, significance)?;
+    let mass_p = check_mass(samples, n_none, integral, 0.5 * significance)?;
     // Given that samples are made at all, do they fall where they should?
     let n_made = (samples - n_none) as f64;
     if n_made == 0.0 {
-        return Ok(());
+        return Ok(mass_p);
     }
     let expected: Vec<f64> = shares.iter().map(|share| share / integral * n_made).collect();
     let observed: Vec<f64> = leaves.iter().map(|leaf| leaf.counted.len() as f64).collect();
-    chi_square_test(&observed, &expected, MIN_EXPECTED, 0.5 * significance).map(|_| ())
+    let cells = chi_square_test(&observed, &expected, MIN_EXPECTED, 0.5 * significance)?;
+    Ok(combined_p_value([mass_p, cells.p_value]))
 }
 
 /// Points of `n` draws by coarse cell, and how many draws gave none.
@@ -287,17 +310,18 @@ fn batch(
     Ok((cells, n_none))
 }
 
-/// The share of draws that gave a sample must be the integral of the density.
-fn check_mass(samples: usize, n_none: usize, integral: f64, significance: f64) -> Result<(), String> {
+/// The share of draws that gave a sample must be the integral of the density. Returns the p-value.
+fn check_mass(samples: usize, n_none: usize, integral: f64, significance: f64) -> Result<f64, String> {
     if !integral.is_finite() || integral > 1.0 + INTEGRAL_TOLERANCE {
         return Err(format!("the density integrates to {integral}"));
     }
     let missing = (1.0 - integral).max(0.0);
     let share = n_none as f64 / samples as f64;
-    let deviate = -normal_quantile(0.25 * significance);
+    let excess = ((share - missing).abs() - INTEGRAL_TOLERANCE).max(0.0);
     let sigma = (missing * (1.0 - missing) / samples as f64).sqrt();
-    if (share - missing).abs() <= deviate * sigma + INTEGRAL_TOLERANCE {
-        return Ok(());
+    let p_value = if excess > 0.0 { 2.0 * normal_cdf(-excess / sigma) } else { 1.0 };
+    if p_value >= significance {
+        return Ok(p_value);
     }
     Err(format!("the density integrates to {integral}, but {:.5} of the draws gave a sample", 1.0 - share))
 }

@@ -45,6 +45,8 @@ fn distributions_have_their_known_quantiles() {
     close(student_t_cdf(1.3, 1e7), normal_cdf(1.3), 1e-7);
     close(sidak(0.05, 10), 1.0 - 0.95_f64.powf(0.1), 1e-14);
     close(sidak(1e-3, 1_000_000), 1.000_500_3e-9, 1e-15);
+    close(combined_p_value([0.7, sidak(0.05, 3), 0.9]), 0.05, 1e-14);
+    close(combined_p_value([1.0, 1.0]), 1.0, 0.0);
 }
 
 /// Merged parts know the same as one observer of the whole, also far from zero.
@@ -183,6 +185,21 @@ fn sphere_test_rejects_densities_5_percent_off() {
             );
         }
     }
+}
+
+/// If all is right, p-values of the whole test are about uniform, so that one below 0.2 comes up a fifth of the time; a
+/// tolerance for the rounding of the integral makes it a little less.
+#[test]
+fn sphere_test_has_uniform_p_values() {
+    let trials = 200;
+    let low = (0..trials)
+        .filter(|seed| {
+            let draw = |rng: &mut Rng| Some(warp::sample_cosine_power(rng.next_point2(), 3.0));
+            sphere_p_value(4000, *seed, draw, |w| warp::cosine_power_pdf(w.z, 3.0)) < 0.2
+        })
+        .count();
+    // The cells alone give 1 - sqrt(0.8) each; the mass of this density is 1 and passes always.
+    close(low as f64 / trials as f64, 1.0 - 0.8_f64.sqrt(), 0.08);
 }
 
 /// Draws without result must be as many as the density lacks to 1.

@@ -108,7 +108,8 @@ impl Dielectric {
         mode: TransportMode,
         lobes: Lobes,
     ) -> Option<BsdfSample> {
-        let f = fresnel_dielectric(wo.z, self.eta);
+        // Equal indices reflect nothing, not even what rounding would leave.
+        let f = if self.eta == 1.0 { 0.0 } else { fresnel_dielectric(wo.z, self.eta) };
         let (p_reflect, p_transmit) =
             probabilities(f, Lobes::SPECULAR_REFLECT, Lobes::SPECULAR_TRANSMIT, lobes);
         if u_component < p_reflect {

@@ -23,6 +23,9 @@ mod diffuse_transmission;
 mod layered;
 mod thin_dielectric;
 
+pub mod catalogue;
+pub mod laws;
+
 #[cfg(test)]
 mod tests;
 
@@ -40,8 +43,8 @@ pub use thin_dielectric::ThinDielectric;
 /// The scattering models, in the shading frame.
 ///
 /// To add one: write a file with a plain struct and `lobes`, `eval`, `sample`, `pdf` as in `diffuse.rs`, add a
-/// variant here, follow the compiler through the matches below, and add lines to the table in `tests.rs`, which checks
-/// everything that a BSDF must satisfy.
+/// variant here, follow the compiler through the matches below, and add lines to [`catalogue`], whose every line
+/// is held against the [`laws`] that a BSDF must keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BsdfKind {
     /// Lambert's reflection.

@@ -3,8 +3,11 @@
 use super::*;
 use crate::bsdf::fresnel::fresnel_dielectric;
 
-fn stochastic_rows() -> Vec<Row> {
-    table().into_iter().filter(|row| row.is_stochastic() && row.kind.lobes().has_non_specular()).collect()
+fn stochastic_rows() -> Vec<Configuration> {
+    catalogue()
+        .into_iter()
+        .filter(|row| row.kind.is_stochastic() && row.kind.lobes().has_non_specular())
+        .collect()
 }
 
 /// A direction of the upper hemisphere with density cos / pi, mixed with the claimed density so that peaks are found.
@@ -19,55 +22,6 @@ fn importance_sample(kind: &BsdfKind, wo: Vector3, rng: &mut Rng) -> Option<(Vec
         sample.wi
     };
     Some((wi, wi.z))
-}
-
-/// What samples carry into a part of the hemisphere is the integral of the estimated f over it.
-#[test]
-fn samples_carry_the_integral_of_f() {
-    for row in stochastic_rows() {
-        for (i, wo) in [direction(15.0, 0.2), direction(70.0, 1.0)].into_iter().enumerate() {
-            for mode in BOTH_MODES {
-                let mut rng = Rng::new(seed(row.name, 40 + i), 0);
-                // All of it, what is near the horizon, and what goes to one side.
-                let parts: [fn(Vector3) -> f64; 3] =
-                    [|_| 1.0, |w| f64::from(u8::from(w.z < 0.5)), |w| f64::from(u8::from(w.x > 0.2))];
-                let mut sampled = [Moments::default(); 3];
-                let mut evaluated = [Moments::default(); 3];
-                for _ in 0..60_000 {
-                    let sample = draw(&row.kind, wo, mode, Lobes::NON_SPECULAR, &mut rng);
-                    let u = Point2::new(rng.next_f32(), rng.next_f32());
-                    let wi = etendue_math::warp::sample_cosine_hemisphere(u);
-                    let f = row.kind.eval(wo, wi, mode, Lobes::NON_SPECULAR)[1] * std::f32::consts::PI;
-                    for (part, (s, e)) in parts.iter().zip(sampled.iter_mut().zip(&mut evaluated)) {
-                        s.push(sample.map_or(0.0, |s| f64::from(s.weight[1]) * part(s.wi)));
-                        e.push(f64::from(f) * part(wi));
-                    }
-                }
-                for (s, e) in sampled.iter().zip(&evaluated) {
-                    means_agree(s, e, significance())
-                        .unwrap_or_else(|e| panic!("{}, {mode:?}, {wo:?}: {e}", row.name));
-                }
-            }
-        }
-    }
-}
-
-/// Helmholtz in the mean: exchanging both directions changes no average over pairs.
-#[test]
-fn means_may_be_reversed() {
-    for row in stochastic_rows() {
-        let mut rng = Rng::new(seed(row.name, 50), 0);
-        let (mut forward, mut backward) = (Moments::default(), Moments::default());
-        for _ in 0..100_000 {
-            // One direction is steep, the other flat: an asymmetric average.
-            let steep = direction(30.0 * rng.next_f32(), TAU as f32 * rng.next_f32());
-            let flat = direction(50.0 + 30.0 * rng.next_f32(), TAU as f32 * rng.next_f32());
-            let f = |a, b| f64::from(row.kind.eval(a, b, TransportMode::Radiance, Lobes::ALL)[2]);
-            forward.push(f(steep, flat));
-            backward.push(f(flat, steep));
-        }
-        means_agree(&forward, &backward, significance()).unwrap_or_else(|e| panic!("{}: {e}", row.name));
-    }
 }
 
 /// Asking twice gives the same answer, and both sides of the surface are alike.
@@ -90,7 +44,7 @@ fn values_are_functions_of_their_arguments() {
 fn density_is_positive_where_samples_go() {
     for row in stochastic_rows() {
         let mut rng = Rng::new(seed(row.name, 60), 0);
-        for wo in row.directions() {
+        for wo in directions(&row.kind) {
             for lobes in [Lobes::ALL, Lobes::DIFFUSE, Lobes::GLOSSY, Lobes::NON_SPECULAR] {
                 for _ in 0..500 {
                     let Some(sample) = draw(&row.kind, wo, TransportMode::Radiance, lobes, &mut rng) else {
