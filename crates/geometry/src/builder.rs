@@ -6,7 +6,7 @@ use crate::bvh::{self, BuildPrimitive, Bvh, INSTANCE, PrimitiveRef, TriangleSour
 use crate::geometry::Geometry;
 use crate::hit::{GeometryId, ObjectId};
 use crate::instance::Instance;
-use crate::shape::Shape;
+use crate::shape::{Shape, entity_of};
 use crate::shape::entity::Entity;
 
 /// Group index of the world; object `i` is group `i + 1`.
@@ -144,10 +144,10 @@ struct Triangles<'a> {
 
 impl TriangleSource for Triangles<'_> {
     fn corners(&self, triangle: PrimitiveRef) -> [[f32; 3]; 3] {
-        self.entities[triangle.geometry as usize].triangle(triangle.primitive)
+        self.entities[entity_of(triangle)].triangle(triangle.primitive)
     }
 
     fn second(&self, first: PrimitiveRef) -> Option<u32> {
-        bvh::second_of(&self.seconds[first.geometry as usize], first.primitive)
+        bvh::second_of(&self.seconds[entity_of(first)], first.primitive)
     }
 }

@@ -62,8 +62,8 @@ pub(crate) fn surface_error(p: Point3, size: f64) -> Vector3 {
 }
 
 /// Largest magnitude of a coordinate.
-pub(crate) fn largest_coordinate(points: &[DVec3]) -> f64 {
-    points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max)
+pub(crate) fn largest_coordinate(points: impl IntoIterator<Item = DVec3>) -> f64 {
+    points.into_iter().map(|p| p.abs().max_element()).fold(0.0, f64::max)
 }
 
 /// Normal and tangents of a surface after an affine map: tangents are pushed forward, the normal is pulled back.

@@ -8,6 +8,7 @@ use crate::hit::{GeometryId, Hit, NO_INSTANCE, SurfaceDerivatives, SurfacePoint}
 use crate::instance::Instance;
 use crate::mesh::heap;
 use crate::shape::entity::Entity;
+use crate::shape::resolve;
 
 /// Everything that a ray can meet. Made by [`crate::GeometryBuilder`].
 #[derive(Debug)]
@@ -253,7 +254,8 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Visitor for Search<'_, F, ANY> {
 
     #[inline]
     fn triangle(&mut self, triangle: PrimitiveRef, t: f32, b: [f32; 2]) -> Verdict {
-        self.consider(triangle, t, b)
+        let (primitive, uv) = resolve(triangle, b);
+        self.consider(primitive, t, uv)
     }
 
     #[inline(always)]

@@ -29,7 +29,7 @@ impl Geometry {
         }
         let n = triangles.emission_cone(primitive).0;
         let corners = triangles.positions(primitive);
-        let size = double::largest_coordinate(&corners.map(double::point)) as f32;
+        let size = double::largest_coordinate(corners.map(double::point)) as f32;
         // Six roundings of numbers no larger than twice the coordinates.
         let p_error = 6.0 * f32::EPSILON * size + f32::MIN_POSITIVE;
         (n.as_vector().length_squared() > 0.0).then_some(FlatTriangle { corners, n, p_error })

@@ -10,6 +10,7 @@ use crate::bvh::{INSTANCE, PrimitiveRef};
 use crate::geometry::Geometry;
 use crate::hit::GeometryId;
 use crate::mesh::MeshError;
+use crate::shape::entity_of;
 
 /// New places for the vertices of a triangle mesh.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +55,7 @@ impl Geometry {
     /// Refits a hierarchy, or builds it anew where it no longer fits; true if it did.
     fn refit_group(&mut self, group: u32) -> bool {
         let mut bvh = std::mem::take(&mut self.groups[group as usize]);
-        let corners = |r: PrimitiveRef| self.entities[r.geometry as usize].valid_triangle(r.primitive);
+        let corners = |r: PrimitiveRef| self.entities[entity_of(r)].valid_triangle(r.primitive);
         let n_found = bvh.refit(&corners, &|item| {
             if item.geometry == INSTANCE {
                 return self.instance_bounds(item.primitive);

@@ -16,6 +16,8 @@ mod triangles;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use patches::{entity_of, resolve};
+
 use std::f64::consts::TAU;
 
 use etendue_math::{Bounds3, Point3, Vector3};

@@ -7,7 +7,7 @@ use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray, Transform, Vector3};
 
 use super::cylinder::Cylinder;
 use super::disk::Disk;
-use super::patches::Patches;
+use super::patches::{self, Patches};
 use super::quadric::{Quadric, QuadricShape};
 use super::sphere::Sphere;
 use super::triangles::Triangles;
@@ -63,6 +63,9 @@ impl Entity {
                 let corners = |t: u32| self.valid_triangle(t);
                 return append_pairs(geometry, &mesh.indices, mesh.positions.len(), corners, primitives);
             }
+            Self::Patches(patches) if patches.is_flat() => {
+                return append_halves(patches, geometry, primitives);
+            }
             Self::Patches(patches) => primitives.extend(
                 (0..self.n_primitives())
                     .filter(|&patch| patches.is_valid(patch))
@@ -78,31 +81,35 @@ impl Entity {
         Vec::new()
     }
 
-    /// Corners of a triangle.
+    /// Corners of a triangle, or half of a patch.
     pub(crate) fn triangle(&self, triangle: u32) -> [[f32; 3]; 3] {
         match self {
             Self::Triangles(triangles) => triangles.positions(triangle).map(|p| [p.x, p.y, p.z]),
-            Self::Patches(_) | Self::Quadric(_) => [[f32::NAN; 3]; 3],
+            Self::Patches(patches) => patches.half_corners(triangle).map(|p| [p.x, p.y, p.z]),
+            Self::Quadric(_) => [[f32::NAN; 3]; 3],
         }
     }
 
-    /// Corners of a triangle that can be hit.
+    /// Corners of a triangle, or half of a patch, that can be hit.
     #[inline]
     pub(crate) fn valid_triangle(&self, triangle: u32) -> Option<[[f32; 3]; 3]> {
         match self {
             Self::Triangles(triangles) => triangles.valid_corners(triangle),
-            Self::Patches(_) | Self::Quadric(_) => None,
+            Self::Patches(patches) => {
+                (patches.is_flat() && patches.is_valid(triangle / 2)).then(|| self.triangle(triangle))
+            }
+            Self::Quadric(_) => None,
         }
     }
 
-    /// Number of triangles that can be hit.
+    /// Number of triangles and halves of patches that can be hit.
     pub(crate) fn n_valid_triangles(&self) -> usize {
-        match self {
-            Self::Triangles(_) => {
-                (0..self.n_primitives()).into_par_iter().filter(|&t| self.valid_triangle(t).is_some()).count()
-            }
-            Self::Patches(_) | Self::Quadric(_) => 0,
-        }
+        let n = match self {
+            Self::Triangles(_) => self.n_primitives(),
+            Self::Patches(_) => 2 * self.n_primitives(),
+            Self::Quadric(_) => 0,
+        };
+        (0..n).into_par_iter().filter(|&t| self.valid_triangle(t).is_some()).count()
     }
 
     /// Checks what [`set_vertices`](Self::set_vertices) is about to take.
@@ -151,11 +158,14 @@ impl Entity {
     /// The point of a hit of `ray`, before rounding too.
     #[inline(always)]
     pub(crate) fn point(&self, primitive: u32, ray: &Ray, t: f32, uv: [f32; 2]) -> (DVec3, SurfacePoint) {
-        if let Self::Triangles(triangles) = self {
-            return triangles.point(primitive, uv);
+        match self {
+            Self::Triangles(triangles) => triangles.point(primitive, uv),
+            Self::Patches(patches) => patches.point(primitive, uv),
+            Self::Quadric(quadric) => {
+                let surface = quadric.surface(ray, t, uv);
+                (surface.p, surface.point)
+            }
         }
-        let surface = self.surface(primitive, ray, t, uv);
-        (surface.p, surface.point)
     }
 
     /// Differential geometry of a hit of `ray`.
@@ -281,4 +291,16 @@ impl Entity {
             Self::Quadric(_) => counts.n_quadrics += 1,
         }
     }
+}
+
+/// Appends the halves of all patches, in pairs. Returns the second half of each first one.
+fn append_halves(patches: &Patches, geometry: u32, primitives: &mut Vec<BuildPrimitive>) -> Vec<u32> {
+    let n = patches.mesh().indices.len() as u32;
+    let half = |half: u32| {
+        let corners = patches.half_corners(half).map(|p| [p.x, p.y, p.z]);
+        BuildPrimitive::triangle(patches::half_reference(geometry, half), &corners)
+    };
+    let valid = (0..n).filter(|&patch| patches.is_valid(patch));
+    primitives.extend(valid.map(|patch| half(2 * patch).paired(&half(2 * patch + 1))));
+    (0..2 * n).map(|half| half | 1).collect()
 }

@@ -2,14 +2,17 @@
 //!
 //! A ray meets the patch where the volume spanned by it and a line of constant u vanishes: a quadratic equation in
 //! u (Ramsey, Potter and Hansen 2004, "Ray Bilinear Patch Intersections"; Reshetov 2019, "Cool Patches"). It is
-//! solved in double precision. Patches that are rectangles are sampled uniformly in solid angle, others by a
-//! density that is bilinear in the areas at the corners.
+//! solved in double precision. Meshes of parallelograms are intersected as triangles (`flat.rs`). Patches that are
+//! rectangles are sampled uniformly in solid angle, others by a density that is bilinear in the areas at the corners.
+
+mod flat;
 
 use etendue_math::warp::SphericalRectangle;
 use etendue_math::{Bounds3, Frame, Normal3, Point2, Point3, Ray, Transform, Vector3};
 use glam::DVec3;
 
 use super::{Candidate, Candidates, LocalSurface, weingarten};
+use crate::bvh::{PrimitiveRef, intersect_triangle};
 use crate::double;
 use crate::hit::{ShapeSample, SurfaceDerivatives, SurfacePoint};
 use crate::mesh::BilinearMesh;
@@ -20,6 +23,35 @@ pub(crate) struct Patches {
     mesh: BilinearMesh,
     /// True if normals without vertex normals point against dp/du x dp/dv.
     flips: bool,
+    /// True if all patches are parallelograms. Neighbours are then found by the same test, without gaps.
+    is_flat: bool,
+    /// Largest magnitude of a coordinate.
+    size: f64,
+}
+
+/// Marks a triangle of the hierarchy as half of a patch, in the number of its entity.
+const HALF: u32 = 1 << 31;
+
+/// How the hierarchy names a half of a patch.
+pub(crate) const fn half_reference(geometry: u32, half: u32) -> PrimitiveRef {
+    assert!(geometry < HALF, "too many shapes");
+    PrimitiveRef { geometry: geometry | HALF, primitive: half }
+}
+
+/// The entity of a triangle of the hierarchy.
+#[inline(always)]
+pub(crate) const fn entity_of(triangle: PrimitiveRef) -> usize {
+    (triangle.geometry & !HALF) as usize
+}
+
+/// The primitive that a ray meets and where on it, from the weights of the corners of a triangle of the hierarchy.
+#[inline(always)]
+pub(crate) fn resolve(triangle: PrimitiveRef, b: [f32; 2]) -> (PrimitiveRef, [f32; 2]) {
+    if triangle.geometry & HALF == 0 {
+        return (triangle, b);
+    }
+    let PrimitiveRef { geometry, primitive: half } = triangle;
+    (PrimitiveRef { geometry: geometry & !HALF, primitive: half / 2 }, flat::position(half % 2, b))
 }
 
 /// Solid angles in which rectangles are sampled by direction, in steradians.
@@ -70,7 +102,22 @@ impl Patches {
                 *n = -*n;
             }
         }
-        Self { mesh, flips: reverse_orientation ^ group_from_shape.swaps_handedness() }
+        let flips = reverse_orientation ^ group_from_shape.swaps_handedness();
+        let mut patches = Self { mesh, flips, is_flat: false, size: 0.0 };
+        patches.size = double::largest_coordinate(patches.mesh.positions.iter().copied().map(double::point));
+        patches.is_flat = (0..patches.mesh.indices.len() as u32)
+            .all(|patch| flat::is_parallelogram(&patches.corners(patch), patches.size));
+        patches
+    }
+
+    /// True if the hierarchy holds the halves of patches, as triangles.
+    pub(crate) const fn is_flat(&self) -> bool {
+        self.is_flat
+    }
+
+    /// Corners of a half, of which each patch has two.
+    pub(crate) fn half_corners(&self, half: u32) -> [Point3; 3] {
+        flat::corners(self.positions(half / 2), half % 2)
     }
 
     pub(crate) const fn mesh(&self) -> &BilinearMesh {
@@ -122,6 +169,14 @@ impl Patches {
 
     /// Up to two hits in order of t, with the position on the patch.
     pub(crate) fn intersect(&self, patch: u32, ray: &Ray) -> Candidates {
+        if self.is_flat {
+            let hit = (2 * patch..2 * patch + 2).find_map(|half| {
+                let (t, b) = intersect_triangle(ray, &self.half_corners(half).map(|p| [p.x, p.y, p.z]))?;
+                let [u, v] = flat::position(half % 2, b).map(f64::from);
+                Some(Candidate { t: t.into(), u, v })
+            });
+            return [hit, None];
+        }
         intersect(&self.corners(patch), double::point(ray.origin), double::vector(ray.direction))
     }
 
@@ -134,11 +189,37 @@ impl Patches {
         (if n.dot(interpolated) < 0.0 { -n } else { n }, Some(interpolated))
     }
 
-    /// Differential geometry at a position on the patch.
-    pub(crate) fn surface(&self, patch: u32, uv: [f32; 2]) -> LocalSurface {
+    /// The point at a position on a patch with these corners.
+    #[inline]
+    fn place(&self, c: &Corners, u: f64, v: f64) -> DVec3 {
+        if self.is_flat { flat::point(c, u, v) } else { bilinear(c, u, v) }
+    }
+
+    /// The point at a position on the patch, before rounding too.
+    #[inline]
+    pub(crate) fn point(&self, patch: u32, uv: [f32; 2]) -> (DVec3, SurfacePoint) {
         let c = self.corners(patch);
         let (u, v) = (f64::from(uv[0]), f64::from(uv[1]));
-        let p = bilinear(&c, u, v);
+        let p = self.place(&c, u, v);
+        let (ng, interpolated) = self.geometric_normal(patch, &c, u, v);
+        let rounded = double::to_point(p);
+        let ns = interpolated.and_then(DVec3::try_normalize).unwrap_or(ng);
+        let point = SurfacePoint {
+            p: rounded,
+            p_error: double::surface_error(rounded, self.size),
+            ng: double::to_normal(ng),
+            ns: double::to_normal(ns),
+            uv: self.uv(patch, uv),
+            face_index: self.mesh.face_indices.get(patch as usize).copied().unwrap_or(0),
+        };
+        (p, point)
+    }
+
+    /// Differential geometry at a position on the patch.
+    pub(crate) fn surface(&self, patch: u32, uv: [f32; 2]) -> LocalSurface {
+        let (p, point) = self.point(patch, uv);
+        let c = self.corners(patch);
+        let (u, v) = (f64::from(uv[0]), f64::from(uv[1]));
         let (ng, interpolated) = self.geometric_normal(patch, &c, u, v);
         let (pu, pv) = (derivative_u(&c, v), derivative_v(&c, u));
         let change = self.parameter_change(patch, u, v);
@@ -148,16 +229,7 @@ impl Patches {
             let (a, b) = change.apply(double::vector(dnu), double::vector(dnv));
             (double::to_vector(a), double::to_vector(b))
         });
-        let rounded = double::to_point(p);
         let (dpdu, dpdv) = (double::to_vector(dpdu), double::to_vector(dpdv));
-        let point = SurfacePoint {
-            p: rounded,
-            p_error: double::surface_error(rounded, double::largest_coordinate(&c)),
-            ng: double::to_normal(ng),
-            ns: double::to_normal(ng),
-            uv: self.uv(patch, uv),
-            face_index: self.mesh.face_indices.get(patch as usize).copied().unwrap_or(0),
-        };
         let derivatives =
             SurfaceDerivatives { dpdu, dpdv, shading_dpdu: dpdu, shading_dpdv: dpdv, dndu, dndv };
         let mut surface = LocalSurface { p, point, derivatives };
@@ -233,10 +305,10 @@ impl Patches {
 
     fn sample_at(&self, patch: u32, uv: [f64; 2], pdf_a: f32) -> ShapeSample {
         let c = self.corners(patch);
-        let p = double::to_point(bilinear(&c, uv[0], uv[1]));
+        let p = double::to_point(self.place(&c, uv[0], uv[1]));
         ShapeSample {
             p,
-            p_error: double::surface_error(p, double::largest_coordinate(&c)),
+            p_error: double::surface_error(p, self.size),
             n: double::to_normal(self.geometric_normal(patch, &c, uv[0], uv[1]).0),
             uv: self.uv(patch, uv.map(|x| x as f32)),
             pdf_a,
@@ -317,7 +389,6 @@ fn shade(
 ) {
     let length = interpolated.length();
     let Some(n) = interpolated.try_normalize() else { return };
-    surface.point.ns = double::to_normal(n);
     let ns = surface.point.ns.as_vector();
     let surface = &mut surface.derivatives;
     let second = ns.cross(surface.dpdu);
