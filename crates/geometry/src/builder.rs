@@ -6,8 +6,8 @@ use crate::bvh::{self, BuildPrimitive, Bvh, INSTANCE, PrimitiveRef, TriangleSour
 use crate::geometry::Geometry;
 use crate::hit::{GeometryId, ObjectId};
 use crate::instance::Instance;
-use crate::shape::{Shape, entity_of};
 use crate::shape::entity::Entity;
+use crate::shape::{Shape, entity_of};
 
 /// Group index of the world; object `i` is group `i + 1`.
 pub(crate) const WORLD: u32 = 0;

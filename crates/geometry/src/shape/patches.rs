@@ -6,6 +6,8 @@
 //! rectangles are sampled uniformly in solid angle, others by a density that is bilinear in the areas at the corners.
 
 mod flat;
+#[cfg(test)]
+mod tests;
 
 use etendue_math::warp::SphericalRectangle;
 use etendue_math::{Bounds3, Frame, Normal3, Point2, Point3, Ray, Transform, Vector3};
@@ -182,7 +184,13 @@ impl Patches {
 
     /// The geometric normal and the interpolated vertex normal.
     fn geometric_normal(&self, patch: u32, c: &Corners, u: f64, v: f64) -> (DVec3, Option<DVec3>) {
-        let n = derivative_u(c, v).cross(derivative_v(c, u)).normalize_or_zero();
+        // The mean over a parallelogram that is none but for rounding.
+        let n = if self.is_flat {
+            (c[3] - c[0]).cross(c[2] - c[1])
+        } else {
+            derivative_u(c, v).cross(derivative_v(c, u))
+        };
+        let n = n.normalize_or_zero();
         let n = if self.flips { -n } else { n };
         let Some(normals) = self.normals(patch) else { return (n, None) };
         let interpolated = bilinear(&normals, u, v);
