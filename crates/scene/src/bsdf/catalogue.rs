@@ -6,7 +6,9 @@ use etendue_spectrum::Sampled;
 
 use super::laws::Law;
 use super::microfacet::Microfacets;
-use super::{Base, BsdfKind, Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, ThinDielectric};
+use super::{
+    Base, BsdfKind, Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, ThinDielectric, classic,
+};
 
 /// A BSDF with a name.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,21 +28,21 @@ pub struct Configuration {
 }
 
 impl Configuration {
-    fn new(name: &'static str, model: &'static str, kind: BsdfKind) -> Self {
+    pub(super) fn new(name: &'static str, model: &'static str, kind: BsdfKind) -> Self {
         Self { name, model, parameters: Vec::new(), kind, is_lossless: false, breaks: &[] }
     }
 
-    fn with(mut self, name: &'static str, values: &[f32]) -> Self {
+    pub(super) fn with(mut self, name: &'static str, values: &[f32]) -> Self {
         let values: Vec<String> = values.iter().map(f32::to_string).collect();
         self.parameters.push((name, values.join(" ")));
         self
     }
 
-    fn lossless(self) -> Self {
+    pub(super) fn lossless(self) -> Self {
         Self { is_lossless: true, ..self }
     }
 
-    fn breaking(self, breaks: &'static [Law]) -> Self {
+    pub(super) fn breaking(self, breaks: &'static [Law]) -> Self {
         Self { breaks, ..self }
     }
 }
@@ -53,7 +55,7 @@ impl Configuration {
 pub fn catalogue() -> Vec<Configuration> {
     let (smooth, rough) = (glass(0.0, 0.0, 1.5), glass(0.3, 0.3, 1.5));
     let mirror = Base::Conductor(copper(0.0, 0.0));
-    vec![
+    let mut rows = vec![
         diffuse("diffuse", [0.1, 0.4, 0.6, 0.9]),
         diffuse("diffuse, white", [1.0; 4]).lossless(),
         sheet("sheet", [0.1, 0.2, 0.3, 0.4], [0.5, 0.4, 0.2, 0.1]),
@@ -83,7 +85,9 @@ pub fn catalogue() -> Vec<Configuration> {
         layered("metal in lacquer", coated(smooth, Base::Conductor(copper(0.3, 0.3)))),
         layered("rough both", coated(glass(0.2, 0.1, 1.5), Base::Conductor(copper(0.2, 0.4)))),
         layered("milky lacquer", milky(coated(smooth, mirror))),
-    ]
+    ];
+    rows.extend(classic::configurations());
+    rows
 }
 
 fn diffuse(name: &'static str, reflectance: [f32; 4]) -> Configuration {

@@ -16,6 +16,7 @@ pub mod microfacet;
 mod lobes;
 mod local;
 
+pub mod classic;
 mod conductor;
 mod dielectric;
 mod diffuse;
@@ -32,6 +33,7 @@ mod tests;
 use etendue_math::{Frame, Normal3, Point2, Vector3};
 use etendue_spectrum::Sampled;
 
+pub use classic::Classic;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
@@ -59,6 +61,8 @@ pub enum BsdfKind {
     ThinDielectric(ThinDielectric),
     /// A coated diffuse or metal surface.
     Layered(Layered),
+    /// A model of the literature: Phong, Ward, Schlick and others.
+    Classic(Classic),
 }
 
 impl BsdfKind {
@@ -73,6 +77,7 @@ impl BsdfKind {
             Self::Dielectric(bsdf) => bsdf.lobes(),
             Self::ThinDielectric(bsdf) => bsdf.lobes(),
             Self::Layered(bsdf) => bsdf.lobes(),
+            Self::Classic(bsdf) => bsdf.lobes(),
         }
     }
 
@@ -87,6 +92,7 @@ impl BsdfKind {
             Self::Dielectric(bsdf) => bsdf.eval(wo, wi, mode, lobes),
             Self::ThinDielectric(_) => Sampled::ZERO,
             Self::Layered(bsdf) => bsdf.eval(wo, wi, mode, lobes),
+            Self::Classic(bsdf) => bsdf.eval(wo, wi, mode, lobes),
         }
     }
 
@@ -108,6 +114,7 @@ impl BsdfKind {
             Self::Dielectric(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
             Self::ThinDielectric(bsdf) => bsdf.sample(wo, u_component, lobes),
             Self::Layered(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
+            Self::Classic(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
         }
     }
 
@@ -122,6 +129,7 @@ impl BsdfKind {
             Self::Dielectric(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::ThinDielectric(_) => 0.0,
             Self::Layered(bsdf) => bsdf.pdf(wo, wi, lobes),
+            Self::Classic(bsdf) => bsdf.pdf(wo, wi, lobes),
         }
     }
 
@@ -136,6 +144,7 @@ impl BsdfKind {
                 Self::Dielectric(Dielectric { microfacets: bsdf.microfacets.regularized(), ..bsdf })
             }
             Self::Layered(bsdf) => Self::Layered(bsdf.regularized()),
+            Self::Classic(bsdf) => Self::Classic(bsdf.regularized()),
             Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::ThinDielectric(_) => self,
         }
     }
@@ -148,7 +157,9 @@ impl BsdfKind {
             Self::Diffuse(bsdf) => bsdf.reflectance,
             Self::DiffuseTransmission(bsdf) => bsdf.reflectance + bsdf.transmittance,
             Self::ThinDielectric(_) => Sampled::ONE,
-            Self::Conductor(_) | Self::Dielectric(_) | Self::Layered(_) => self.sampled_albedo(wo),
+            Self::Conductor(_) | Self::Dielectric(_) | Self::Layered(_) | Self::Classic(_) => {
+                self.sampled_albedo(wo)
+            }
         }
     }
 
@@ -308,6 +319,7 @@ impl Bsdf {
             BsdfKind::Conductor(bsdf) => bsdf.microfacets.mean_alpha(),
             BsdfKind::Dielectric(bsdf) if bsdf.lobes().is_glossy() => bsdf.microfacets.mean_alpha(),
             BsdfKind::Layered(bsdf) if bsdf.lobes().is_glossy() => bsdf.glossy_roughness(),
+            BsdfKind::Classic(bsdf) => bsdf.glossy_roughness(),
             _ => 0.0,
         }
     }
@@ -333,3 +345,6 @@ impl Bsdf {
         if denominator > 0.0 { numerator / denominator } else { 0.0 }
     }
 }
+
+/// Paths pass BSDFs by value: a large model keeps its tables elsewhere rather than grow the others.
+const _: () = assert!(std::mem::size_of::<BsdfKind>() <= 112);

@@ -1,5 +1,6 @@
 //! What every BSDF must satisfy, checked for each line of one table, and what single models promise.
 
+mod classic;
 mod fresnel;
 mod layered;
 mod microfacets;

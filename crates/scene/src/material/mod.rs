@@ -10,6 +10,7 @@ mod materials;
 mod bump;
 mod coat;
 mod index;
+mod limits;
 mod metal;
 mod normal_map;
 mod perturbation;
@@ -17,6 +18,7 @@ mod roughness;
 mod spec;
 mod uniform;
 
+pub mod classic;
 mod coated_conductor;
 mod coated_diffuse;
 mod conductor;
@@ -33,6 +35,7 @@ use std::collections::HashMap;
 
 use etendue_spectrum::{Spectrum, Wavelengths};
 
+pub use classic::{ClassicMaterial, ClassicModel};
 pub use coat::Coat;
 pub use coated_conductor::CoatedConductorMaterial;
 pub use coated_diffuse::CoatedDiffuseMaterial;
@@ -50,7 +53,7 @@ pub use perturbation::Perturbation;
 pub use roughness::{Roughness, RoughnessScale};
 pub use thin_dielectric::ThinDielectricMaterial;
 
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, BsdfKind};
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::{SpectrumTexture, Textures};
 
@@ -74,6 +77,8 @@ pub enum Material {
     ThinDielectric(ThinDielectricMaterial),
     /// A sheet that light passes.
     DiffuseTransmission(DiffuseTransmissionMaterial),
+    /// A model of the literature.
+    Classic(ClassicMaterial),
     /// One of two others.
     Mix(MixMaterial),
     /// None: the surface only bounds participating media, and light passes it.
@@ -128,6 +133,8 @@ pub const MATERIALS: &[MaterialSpec] = &[
         doc: "A thin sheet that scatters light to both sides.",
         parameters: DiffuseTransmissionMaterial::PARAMETERS,
     },
+    classic::PHONG,
+    classic::BLINN_PHONG,
     MaterialSpec {
         name: "mix",
         doc: "One of two materials at each point, in a given proportion.",
@@ -169,6 +176,9 @@ impl Material {
             "mix" => Self::Mix(MixMaterial::build(p, named)?),
             "interface" | "none" | "" => Self::Interface,
             other => {
+                if let Some(material) = ClassicMaterial::build(p, materials) {
+                    return Some(Self::Classic(material));
+                }
                 let span = p.span();
                 let known = MATERIALS.iter().map(|material| material.name);
                 p.diagnostics().unknown_name(span, "material", other, known);
@@ -188,6 +198,7 @@ impl Material {
             Self::Dielectric(material) => material.bsdf(textures, ctx, lambda),
             Self::ThinDielectric(material) => material.bsdf(textures, lambda),
             Self::DiffuseTransmission(material) => material.bsdf(textures, ctx, lambda),
+            Self::Classic(material) => BsdfKind::Classic(material.bsdf(textures, ctx, lambda)),
             Self::Mix(_) | Self::Interface => return None,
         };
         Some(Bsdf::new(ctx.ns, ctx.ng, ctx.shading_dpdu, kind))
@@ -204,6 +215,7 @@ impl Material {
             Self::Dielectric(material) => Some(&material.perturbation),
             Self::ThinDielectric(material) => Some(&material.perturbation),
             Self::DiffuseTransmission(material) => Some(&material.perturbation),
+            Self::Classic(material) => Some(&material.perturbation),
             Self::Mix(_) | Self::Interface => None,
         }
     }

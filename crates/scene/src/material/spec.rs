@@ -44,3 +44,8 @@ pub(super) const ALBEDO: ParameterSpec =
 pub(super) const MAX_DEPTH: ParameterSpec =
     spec("maxdepth", "integer", "10", "Largest number of events of a walk between coat and base.");
 pub(super) const N_SAMPLES: ParameterSpec = spec("nsamples", "integer", "1", "Walks per evaluation.");
+pub(super) const EXPONENT: ParameterSpec =
+    spec("exponent", "float texture", "30", "Exponent of the highlight, 0 to 1e6; larger is narrower.");
+
+/// Exponents of highlights.
+pub(super) const EXPONENTS: [f32; 2] = [0.0, 1e6];

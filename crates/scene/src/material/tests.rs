@@ -10,8 +10,8 @@ use etendue_spectrum::{Sampled, Spectrum, Wavelengths};
 use super::*;
 use crate::assets::Assets;
 use crate::bsdf::fresnel::fresnel_conductor;
-use crate::bsdf::{Base, BsdfKind, Lobes, TransportMode};
-use crate::diagnostics::Diagnostics;
+use crate::bsdf::{Base, BsdfKind, Classic, Lobes, TransportMode, classic};
+use crate::diagnostics::{Diagnostics, Severity};
 use crate::document::{Entity, Value};
 use crate::parameters::BuildContext;
 use crate::texture::{Bilerp, FloatTexture, FloatTextureNode, Mapping2, TextureContext};
@@ -252,6 +252,54 @@ fn albedos_are_clamped() {
     let sheet = plain("diffusetransmission").with("reflectance", floats(0.4)).with("scale", floats(3.0));
     let BsdfKind::DiffuseTransmission(sheet) = fixture.kind(&sheet) else { panic!("not a sheet") };
     assert_eq!((sheet.reflectance, sheet.transmittance), (Sampled::ONE, Sampled::splat(0.75)));
+}
+
+/// The models of the literature have safe defaults.
+#[test]
+fn classic_defaults() {
+    let mut fixture = Fixture::default();
+    let mut classic = |name| match fixture.kind(&plain(name)) {
+        BsdfKind::Classic(classic) => classic,
+        other => panic!("{other:?}"),
+    };
+    let (kd, ks) = (Sampled::splat(0.5), Sampled::splat(0.2));
+    assert_eq!(
+        classic("phong"),
+        Classic::Phong(classic::Phong { kd, ks, exponent: 30.0, form: classic::PhongForm::Lewis })
+    );
+    assert_eq!(classic("blinnphong"), Classic::BlinnPhong(classic::BlinnPhong { kd, ks, exponent: 30.0 }));
+}
+
+/// Numbers outside their range are reported, with what is taken in their place.
+#[test]
+fn bad_parameters_are_reported() {
+    let mut fixture = Fixture::default();
+    let mut complaint = |entity: Entity| {
+        let (material, diagnostics) = fixture.build(&entity);
+        let [problem] = diagnostics.list() else { panic!("{:?}", diagnostics.list()) };
+        assert!(material.is_some());
+        (problem.severity, problem.message.clone())
+    };
+    let (severity, message) = complaint(plain("phong").with("exponent", floats(-2.0)));
+    assert!(severity == Severity::Warning && message.contains("is taken as 0"), "{message}");
+    let (severity, message) = complaint(plain("blinnphong").with("kd", floats(0.9)).with("ks", floats(0.3)));
+    assert!(severity == Severity::Warning && message.contains("sum to 1.2"), "{message}");
+    let (severity, message) = complaint(plain("phong").with("kd", floats(1.5)).with("ks", floats(0.0)));
+    assert!(severity == Severity::Warning && message.contains("clamped to 1"), "{message}");
+    let (severity, message) = complaint(plain("phong").with("ks", floats(-0.5)));
+    assert!(severity == Severity::Error && message.contains("negative"), "{message}");
+    let BsdfKind::Classic(Classic::Phong(phong)) =
+        kind_despite_warnings(&mut fixture, &plain("phong").with("kd", floats(0.9)).with("ks", floats(0.3)))
+    else {
+        panic!("not Phong")
+    };
+    assert!((phong.kd[0] - 0.75).abs() < 1e-6 && (phong.ks[0] - 0.25).abs() < 1e-6);
+}
+
+fn kind_despite_warnings(fixture: &mut Fixture, entity: &Entity) -> BsdfKind {
+    let material = fixture.build(entity).0.expect("warnings alone");
+    let mut lambda = Wavelengths::sample_visible(0.3);
+    *fixture.bsdf(material, &context(), &mut lambda).expect("a material that scatters").kind()
 }
 
 /// A mixture shows its second material on as large a share of points as was asked, always the same at one point.

@@ -25,6 +25,7 @@ impl Material {
             Self::DiffuseTransmission(material) => {
                 material.reflectance.constant().is_some() && material.transmittance.constant().is_some()
             }
+            Self::Classic(material) => material.is_uniform(),
             Self::Mix(mix) => {
                 mix.amount.constant().is_some()
                     && mix.materials.iter().all(|part| materials.is_uniform(*part))

@@ -1,0 +1,98 @@
+//! The reflection models of the literature between Phong 1975 and Schlick 1993 and after: opaque surfaces that look the
+//! same from both sides, each a sum of a diffuse-like lobe, a glossy one and perhaps a mirror.
+//!
+//! They sit behind one variant of [`BsdfKind`](super::BsdfKind) and out of line, so that the models which most scenes are
+//! made of stay as quick as without them. What they share is in [`lobed`]: one-sample mixtures of the lobes' densities.
+//! Which laws a model breaks is said in its file and stated in the [catalogue](super::catalogue) and asserted in tests.
+
+mod lobed;
+mod powers;
+
+mod blinn_phong;
+mod phong;
+
+mod catalogue;
+
+use etendue_math::{Point2, Vector3};
+use etendue_spectrum::Sampled;
+
+use self::lobed::Lobed;
+use super::{BsdfSample, Lobes, TransportMode};
+
+pub(super) use catalogue::configurations;
+
+pub use blinn_phong::BlinnPhong;
+pub use phong::{Phong, PhongForm};
+
+/// A model of the literature, in the shading frame.
+///
+/// To add one: write a file with a plain struct that is `Lobed`, add a variant here, follow the compiler, and add lines
+/// to `catalogue.rs`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Classic {
+    /// Phong 1975, normalised by Lewis 1993 or not.
+    Phong(Phong),
+    /// Blinn 1977.
+    BlinnPhong(BlinnPhong),
+}
+
+/// One expression for each model.
+macro_rules! each {
+    ($self:expr, $model:ident => $body:expr) => {
+        match $self {
+            Classic::Phong($model) => $body,
+            Classic::BlinnPhong($model) => $body,
+        }
+    };
+}
+
+impl Classic {
+    /// The lobes present.
+    #[must_use]
+    pub fn lobes(&self) -> Lobes {
+        each!(self, model => lobed::lobes(model))
+    }
+
+    /// f in 1/sr, without the cosine.
+    #[must_use]
+    pub fn eval(&self, wo: Vector3, wi: Vector3, mode: TransportMode, lobes: Lobes) -> Sampled {
+        each!(self, model => lobed::eval(model, wo, wi, mode, lobes))
+    }
+
+    /// A direction of one of the lobes.
+    #[must_use]
+    pub fn sample(
+        &self,
+        wo: Vector3,
+        u_component: f32,
+        u: Point2,
+        mode: TransportMode,
+        lobes: Lobes,
+    ) -> Option<BsdfSample> {
+        each!(self, model => lobed::sample(model, wo, u_component, u, mode, lobes))
+    }
+
+    /// Density of [`Self::sample`] in 1/sr.
+    #[must_use]
+    pub fn pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> f32 {
+        each!(self, model => lobed::pdf(model, wo, wi, lobes))
+    }
+
+    /// The same with wider glossy lobes where they are narrow.
+    #[must_use]
+    pub fn regularized(self) -> Self {
+        match self {
+            Self::Phong(model) => Self::Phong(model.regularized()),
+            Self::BlinnPhong(model) => Self::BlinnPhong(model.regularized()),
+        }
+    }
+
+    /// GGX alpha of about the width of the glossy lobe; 0 without one.
+    #[must_use]
+    pub fn glossy_roughness(&self) -> f32 {
+        if !self.lobes().is_glossy() {
+            return 0.0;
+        }
+        each!(self, model => model.alpha())
+    }
+}

@@ -1,0 +1,57 @@
+//! What the diffuse part and the highlight of a surface reflect.
+
+use etendue_spectrum::{Sampled, Wavelengths};
+
+use crate::material::{MaterialContext, limits};
+use crate::parameters::{ParameterSpec, Parameters};
+use crate::texture::{SpectrumTexture, Textures};
+
+/// Albedo of the diffuse part and strength of the highlight. Where they sum to more than 1 both are scaled down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LobeColors {
+    /// Diffuse.
+    pub kd: SpectrumTexture,
+    /// Highlight.
+    pub ks: SpectrumTexture,
+}
+
+impl LobeColors {
+    pub(super) const KD: ParameterSpec = ParameterSpec {
+        name: "kd",
+        kind: "spectrum texture",
+        default: "0.5",
+        unit: "",
+        doc: "Albedo of the diffuse part, in [0, 1].",
+    };
+    pub(super) const KS: ParameterSpec = ParameterSpec {
+        name: "ks",
+        kind: "spectrum texture",
+        default: "0.2",
+        unit: "",
+        doc: "Strength of the highlight, in [0, 1]; kd + ks may not exceed 1.",
+    };
+
+    pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
+        let (kd, ks) = (limits::albedo(p, "kd", 0.5), limits::albedo(p, "ks", 0.2));
+        limits::sum_of_albedos(p, ["kd", "ks"], [kd, ks]);
+        Self { kd, ks }
+    }
+
+    /// Both at a point.
+    #[inline]
+    pub(super) fn at(
+        &self,
+        textures: &Textures,
+        ctx: &MaterialContext,
+        lambda: &Wavelengths,
+    ) -> (Sampled, Sampled) {
+        let value = |texture| textures.eval_spectrum(texture, &ctx.texture, lambda).clamp(0.0, 1.0);
+        let (kd, ks) = (value(self.kd), value(self.ks));
+        let excess = (kd + ks).max(Sampled::ONE);
+        (kd / excess, ks / excess)
+    }
+
+    pub(super) const fn is_constant(&self) -> bool {
+        self.kd.constant().is_some() && self.ks.constant().is_some()
+    }
+}
