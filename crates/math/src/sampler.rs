@@ -104,6 +104,13 @@ impl Sampler {
         }
     }
 
+    /// Passes over the numbers that choose a light and a point of it, for a vertex that asks no light.
+    #[inline]
+    pub fn skip_light(&mut self) {
+        self.next_1d();
+        self.next_2d();
+    }
+
     /// The next number.
     #[inline]
     pub fn next_1d(&mut self) -> f32 {

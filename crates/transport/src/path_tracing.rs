@@ -44,10 +44,14 @@ pub struct PathSettings {
     pub max_depth: u32,
     /// Paths of more scattering events than this play roulette.
     pub roulette_depth: u32,
+    /// Paths whose throughput is below this play roulette.
+    pub roulette_threshold: f32,
     /// Directions in which a path goes on from each surface; 1 for path tracing, more to see why (SPEC PT-2).
     pub branches: u32,
     /// Walks that share the way from the camera to the first surface that scatters widely.
     pub splitting: u32,
+    /// Light samples at the surface where these walks part.
+    pub light_samples: u32,
     /// Widens narrow lobes after the first wide scattering event: less noise, biased.
     pub regularize: bool,
     /// How lights are found.
@@ -61,8 +65,10 @@ impl Default for PathSettings {
         Self {
             max_depth: 5,
             roulette_depth: 1,
+            roulette_threshold: 0.5,
             branches: 1,
             splitting: 1,
+            light_samples: 1,
             regularize: false,
             lights: LightStrategy::default(),
             wavelengths: WavelengthMode::default(),
@@ -88,6 +94,13 @@ impl PathSettings {
             doc: "scattering events before roulette may end a path",
         },
         ParameterSpec {
+            name: "roulettethreshold",
+            kind: "float",
+            default: "0.5",
+            unit: "",
+            doc: "throughput below which roulette may end a path; a path of half of it lives on with probability 1/2",
+        },
+        ParameterSpec {
             name: "branches",
             kind: "integer",
             default: "1",
@@ -100,6 +113,13 @@ impl PathSettings {
             default: "1",
             unit: "",
             doc: "walks that share the way from the camera to the first surface that scatters widely",
+        },
+        ParameterSpec {
+            name: "lightsamples",
+            kind: "integer",
+            default: "as splitting",
+            unit: "",
+            doc: "samples of the lights at the surface where these walks part",
         },
         ParameterSpec {
             name: "regularize",
@@ -136,8 +156,10 @@ impl PathSettings {
         let default = Self::default();
         let max_depth = p.count("maxdepth", default.max_depth);
         let roulette_depth = p.count("roulettedepth", default.roulette_depth);
+        let roulette_threshold = p.float("roulettethreshold", default.roulette_threshold);
         let branches = p.count("branches", default.branches).max(1);
         let splitting = p.count("splitting", default.splitting).max(1);
+        let light_samples = p.count("lightsamples", splitting).max(1);
         let regularize = p.bool("regularize", false);
         let strategies = [
             ("both", LightStrategy::Both),
@@ -153,7 +175,17 @@ impl PathSettings {
         let wavelengths = p.choice("wavelengths", "hero", &modes);
         // Read where the scene is built.
         p.ignore("lightsampler");
-        Self { max_depth, roulette_depth, branches, splitting, regularize, lights, wavelengths }
+        Self {
+            max_depth,
+            roulette_depth,
+            roulette_threshold,
+            branches,
+            splitting,
+            light_samples,
+            regularize,
+            lights,
+            wavelengths,
+        }
     }
 
     /// The entity that gives these settings.
@@ -200,7 +232,7 @@ impl Integrator for PathTracer {
 #[derive(Clone, Copy, Debug)]
 struct LastScattering {
     reference: Reference,
-    /// Density of the direction taken, per steradian; `None` if no light sample could have found it.
+    /// Density of the directions taken for each light sample, per steradian; `None` if no light sample could have found them.
     pdf_w: Option<f32>,
 }
 
@@ -262,42 +294,55 @@ impl<'s> Walk<'s> {
             if self.settings.regularize && self.has_scattered_widely {
                 bsdf.regularize();
             }
-            if self.settings.splitting > 1 && !self.has_split && bsdf.lobes().has_non_specular() {
+            if self.splits() && !self.has_split && bsdf.lobes().has_non_specular() {
                 return self.split(tracer, &surface, &bsdf, path);
             }
             path.sampler.start_vertex();
-            self.add_direct_light(tracer, &surface, &bsdf, path);
+            self.add_direct_light(tracer, &surface, &bsdf, 1.0, path);
             if self.settings.branches > 1 {
                 return self.branch(tracer, &surface, &bsdf, path);
             }
-            if !self.goes_on(&surface, &bsdf, path) {
+            if !self.goes_on(&surface, &bsdf, 1.0, path) {
                 break;
             }
         }
         self.radiance
     }
 
-    /// Several walks from a surface: they have the way from the camera in common, and the whole of them is spread as evenly
-    /// as so many samples. Roulette takes no notice of the shares.
+    #[inline]
+    const fn splits(&self) -> bool {
+        self.settings.splitting > 1 || self.settings.light_samples > 1
+    }
+
+    /// Several walks from a surface, and as many light samples as are wanted: they have the way from the camera in common,
+    /// and the whole of each kind is spread as evenly as so many samples. Roulette takes no notice of the shares.
     fn split(
-        self,
+        mut self,
         tracer: &Tracer<'_>,
         surface: &Surface,
         bsdf: &Bsdf,
         path: &mut CameraPath<'_, '_>,
     ) -> Sampled {
-        let n = self.settings.splitting;
-        self.share(n, path, |part, mut walk, path| {
-            let own = path.sampler_of_part(&tracer.scene.sampler, part, n);
-            let whole = std::mem::replace(path.sampler, own);
-            walk.roulette_scale *= n as f32;
-            walk.has_split = true;
-            path.sampler.start_vertex();
-            walk.add_direct_light(tracer, surface, bsdf, path);
-            let radiance = walk.finish(tracer, surface, bsdf, path);
-            *path.sampler = whole;
-            radiance
-        })
+        let (n, n_light) = (self.settings.splitting, self.settings.light_samples);
+        self.has_split = true;
+        let walks_per_light_sample = n as f32 / n_light as f32;
+        let lit = self.share(n_light, path, |part, mut walk, path| {
+            path.with_sampler_of_part(&tracer.scene.sampler, part, n_light, |path| {
+                path.sampler.start_vertex();
+                walk.add_direct_light(tracer, surface, bsdf, walks_per_light_sample, path);
+                walk.radiance
+            })
+        });
+        self.radiance = Sampled::ZERO;
+        let scattered = self.share(n, path, |part, mut walk, path| {
+            path.with_sampler_of_part(&tracer.scene.sampler, part, n, |path| {
+                walk.roulette_scale *= n as f32;
+                path.sampler.start_vertex();
+                path.sampler.skip_light();
+                walk.finish(tracer, surface, bsdf, walks_per_light_sample, path)
+            })
+        });
+        lit + scattered
     }
 
     /// Goes on in several directions. The rays of a pixel then grow as the power of the depth (SPEC PT-2), most of them
@@ -309,7 +354,9 @@ impl<'s> Walk<'s> {
         bsdf: &Bsdf,
         path: &mut CameraPath<'_, '_>,
     ) -> Sampled {
-        self.share(self.settings.branches, path, |_, walk, path| walk.finish(tracer, surface, bsdf, path))
+        self.share(self.settings.branches, path, |_, walk, path| {
+            walk.finish(tracer, surface, bsdf, 1.0, path)
+        })
     }
 
     /// What this walk has brought so far and what `n` others bring, which start with its state and a share of its
@@ -336,19 +383,31 @@ impl<'s> Walk<'s> {
         tracer: &Tracer<'_>,
         surface: &Surface,
         bsdf: &Bsdf,
+        walks_per_light_sample: f32,
         path: &mut CameraPath<'_, '_>,
     ) -> Sampled {
-        if self.goes_on(surface, bsdf, path) { self.follow(tracer, path) } else { self.radiance }
+        if self.goes_on(surface, bsdf, walks_per_light_sample, path) {
+            self.follow(tracer, path)
+        } else {
+            self.radiance
+        }
     }
 
     /// Chooses where the path goes from a surface; `false` if it ends there.
-    fn goes_on(&mut self, surface: &Surface, bsdf: &Bsdf, path: &mut CameraPath<'_, '_>) -> bool {
+    #[inline]
+    fn goes_on(
+        &mut self,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        walks_per_light_sample: f32,
+        path: &mut CameraPath<'_, '_>,
+    ) -> bool {
         let (u_component, u) = (path.sampler.next_1d(), path.sampler.next_2d());
         let Some(sample) = bsdf.sample(surface.wo, u_component, u, TransportMode::Radiance, Lobes::ALL)
         else {
             return false;
         };
-        self.scatter(surface, &sample, path.layers);
+        self.scatter(surface, &sample, walks_per_light_sample, path.layers);
         self.survives_roulette(path)
     }
 
@@ -402,17 +461,19 @@ impl<'s> Walk<'s> {
         }
     }
 
+    /// Light that reaches the surface straight from one light, weighted against so many directions of scattering.
     fn add_direct_light(
         &mut self,
         tracer: &Tracer<'_>,
         surface: &Surface,
         bsdf: &Bsdf,
+        walks_per_light_sample: f32,
         path: &mut CameraPath<'_, '_>,
     ) {
         if self.settings.lights == LightStrategy::Scattering || !bsdf.lobes().has_non_specular() {
             return;
         }
-        let weighs = self.settings.lights == LightStrategy::Both;
+        let weighs = if self.settings.lights == LightStrategy::Both { walks_per_light_sample } else { 0.0 };
         let Some(Candidate { light, weighted, unoccluded, weight }) =
             choose_light(tracer.scene, surface, bsdf, weighs, path.sampler, path.lambda)
         else {
@@ -437,12 +498,18 @@ impl<'s> Walk<'s> {
         path.layers.emit_through(Event::Diffuse, diffuse);
     }
 
-    fn scatter(&mut self, surface: &Surface, sample: &BsdfSample, layers: &mut LayerRecorder<'_>) {
+    fn scatter(
+        &mut self,
+        surface: &Surface,
+        sample: &BsdfSample,
+        walks_per_light_sample: f32,
+        layers: &mut LayerRecorder<'_>,
+    ) {
         self.beta *= sample.weight;
         self.roulette_scale *= sample.eta * sample.eta;
         self.depth += 1;
         self.ray = surface.spawn_ray(sample.wi);
-        let pdf_w = (!sample.is_specular()).then_some(sample.pdf_w);
+        let pdf_w = (!sample.is_specular()).then_some(sample.pdf_w * walks_per_light_sample);
         self.has_scattered_widely |= pdf_w.is_some();
         self.last = Some(LastScattering { reference: surface.reference(), pdf_w });
         if !layers.is_idle() {
@@ -454,7 +521,8 @@ impl<'s> Walk<'s> {
         if self.depth <= self.settings.roulette_depth {
             return true;
         }
-        let probability = survival_probability(self.beta.max_value() * self.roulette_scale);
+        let brightness = self.beta.max_value() * self.roulette_scale;
+        let probability = survival_probability(brightness, self.settings.roulette_threshold);
         if probability == 1.0 {
             return true;
         }

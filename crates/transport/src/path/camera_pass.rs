@@ -199,13 +199,27 @@ pub struct CameraPath<'p, 'e> {
 }
 
 impl CameraPath<'_, '_> {
-    /// The numbers of one of `n` parts into which every path of the image splits: those of all parts of all passes of a
-    /// pixel are a pattern of their own, as evenly spread as so many samples.
-    #[must_use]
-    pub fn sampler_of_part(&self, settings: &SamplerSettings, part: u32, n: u32) -> Sampler {
-        let seed = hash64(&[settings.seed, u64::from(n)]);
-        let samples_per_pixel = settings.samples_per_pixel.saturating_mul(n);
-        let settings = SamplerSettings { seed, samples_per_pixel, ..*settings };
-        Sampler::new(&settings, self.pixel, self.pass * u64::from(n) + u64::from(part))
+    /// Does something with the numbers of one of `n` parts into which every path of the image splits: those of all parts of
+    /// all passes of a pixel are a pattern of their own, as evenly spread as so many samples. A single part has the path's
+    /// own numbers.
+    pub fn with_sampler_of_part<T>(
+        &mut self,
+        settings: &SamplerSettings,
+        part: u32,
+        n: u32,
+        work: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        let own = if n == 1 {
+            self.sampler.clone()
+        } else {
+            let seed = hash64(&[settings.seed, u64::from(n)]);
+            let samples_per_pixel = settings.samples_per_pixel.saturating_mul(n);
+            let settings = SamplerSettings { seed, samples_per_pixel, ..*settings };
+            Sampler::new(&settings, self.pixel, self.pass * u64::from(n) + u64::from(part))
+        };
+        let whole = std::mem::replace(self.sampler, own);
+        let result = work(self);
+        *self.sampler = whole;
+        result
     }
 }

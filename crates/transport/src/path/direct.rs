@@ -38,14 +38,16 @@ pub struct Candidate {
 /// Samples each group of lights, and chooses one of the samples in proportion to what the surface would send on of it:
 /// resampled importance sampling (Talbot, Cline and Egbert 2005) of one shadow ray. Each group's sample is an unbiased
 /// estimate of the group's light, weighted against scattering by its own density; the choice keeps the expectation of
-/// their sum, and that they share their random numbers does not matter to it. Always takes as many numbers.
+/// their sum, and that they share their random numbers does not matter to it. `scattering_weight` multiplies the density of
+/// scattering that samples are weighted against: the number of directions for each sample, 0 for none. Always takes as many
+/// numbers.
 #[inline]
 #[must_use]
 pub fn choose_light(
     scene: &Scene,
     surface: &Surface,
     bsdf: &Bsdf,
-    weighs_scattering: bool,
+    scattering_weight: f32,
     sampler: &mut Sampler,
     lambda: &Wavelengths,
 ) -> Option<Candidate> {
@@ -54,7 +56,7 @@ pub fn choose_light(
     let candidate = |group: usize| {
         let light = sample_light(scene, group, surface, (u_light, u_place), lambda)?;
         let (f_cos, pdf_scatter) = bsdf.eval_cos_and_pdf(surface.wo, light.sample.wi);
-        let weighted = light.weighted(if weighs_scattering { pdf_scatter } else { 0.0 });
+        let weighted = light.weighted(scattering_weight * pdf_scatter);
         let unoccluded = f_cos * weighted;
         (!unoccluded.is_black()).then_some(Candidate { light, weighted, unoccluded, weight: 1.0 })
     };

@@ -64,6 +64,23 @@ fn walks_that_split_at_the_first_surface() {
     assert!(3 * rays_of_one < rays_of_four && rays_of_four < 4 * rays_of_one, "{rays_of_one} {rays_of_four}");
 }
 
+/// Walks may share one light sample, and light samples one walk: the mean stays, since the weights of both techniques know
+/// how many there are of each.
+#[test]
+fn walks_and_light_samples_in_any_number() {
+    let world = open_box(&ceiling_light(0.4));
+    let integrator = |n: u32, m: u32| {
+        format!("\"integer maxdepth\" 4 \"integer splitting\" {n} \"integer lightsamples\" {m}")
+    };
+    let render = |n, m| blocks(&format!("{n} walks, {m} light samples"), &world, &integrator(n, m), 120);
+    let plain = render(1, 1);
+    for (n, m) in [(4, 1), (1, 4), (3, 2)] {
+        expect_same_image(&format!("{n} walks and {m} light samples"), &render(n, m), &plain, 0.05);
+    }
+    let rays = |n, m| count_rays(&world, &integrator(n, m));
+    assert!(rays(1, 1) < rays(1, 4) && rays(1, 4) < rays(4, 1) && rays(4, 1) < rays(4, 4));
+}
+
 /// Walks that split find their own ways for path expressions too.
 #[test]
 fn walks_that_split_keep_their_letters() {

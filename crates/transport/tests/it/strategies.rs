@@ -138,22 +138,33 @@ fn point_lights_must_be_sampled() {
     assert_eq!(render("both"), render("lights"));
 }
 
-/// MC-11: where roulette starts changes neither the mean nor a block of it; it saves rays and costs variance.
+/// MC-11: where roulette starts, in depth and in throughput, changes neither the mean nor a block of it; it saves rays and
+/// costs variance.
 #[test]
 fn roulette_keeps_the_mean() {
     let world = open_box(&(ceiling_light(0.4) + &ball("\"dielectric\"", -0.4)));
-    let render = |depth: u32| {
-        let integrator = format!("\"integer maxdepth\" 12 \"integer roulettedepth\" {depth}");
-        blocks(&format!("roulette after {depth}"), &world, &integrator, 120)
+    let integrator = |depth: u32, threshold: f32| {
+        format!(
+            "\"integer maxdepth\" 12 \"integer roulettedepth\" {depth} \"float roulettethreshold\" {threshold}"
+        )
     };
-    let without = render(100);
-    for depth in [0, 1, 4] {
-        expect_same_image(&format!("roulette after {depth}"), &render(depth), &without, 0.05);
+    let render = |depth, threshold| {
+        blocks(
+            &format!("roulette after {depth} below {threshold}"),
+            &world,
+            &integrator(depth, threshold),
+            120,
+        )
+    };
+    let without = render(100, 0.5);
+    for (depth, threshold) in [(0, 1.0), (0, 0.5), (1, 0.5), (4, 2.0), (0, 0.0)] {
+        let title = format!("roulette after {depth} below {threshold}");
+        expect_same_image(&title, &render(depth, threshold), &without, 0.05);
     }
-    let rays = |depth: u32| {
-        count_rays(&world, &format!("\"integer maxdepth\" 12 \"integer roulettedepth\" {depth}"))
-    };
-    assert!(rays(0) < rays(100) / 2);
+    let rays = |depth, threshold| count_rays(&world, &integrator(depth, threshold));
+    assert!(rays(0, 1.0) < rays(100, 1.0) / 2);
+    assert!(rays(0, 1.0) < rays(0, 0.5) && rays(0, 0.5) < rays(0, 0.0));
+    assert_eq!(rays(0, 0.0), rays(100, 1.0));
 }
 
 #[derive(Debug, Default)]
