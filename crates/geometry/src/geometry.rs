@@ -229,17 +229,27 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Search<'_, F, ANY> {
     #[inline(never)]
     fn shape(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict {
         let entity = &self.geometry.entities[item.geometry as usize];
+        if let Entity::Sphere(sphere) = entity {
+            let Some((near, far)) = sphere.globe().intersect(self.ray) else { return Verdict::Pass };
+            return match (self.found(item, near, [0.0; 2], t_max), far) {
+                (Verdict::Pass, Some(far)) => self.found(item, far, [0.0; 2], t_max),
+                (verdict, _) => verdict,
+            };
+        }
         for candidate in entity.intersect(item.primitive, self.ray).into_iter().flatten() {
-            let t = candidate.t as f32;
-            if t <= 0.0 || t > t_max {
-                continue;
-            }
-            let verdict = self.consider(item, t, [candidate.u as f32, candidate.v as f32]);
+            let verdict = self.found(item, candidate.t, [candidate.u as f32, candidate.v as f32], t_max);
             if verdict != Verdict::Pass {
                 return verdict;
             }
         }
         Verdict::Pass
+    }
+
+    /// Considers a hit of a primitive that is no triangle, if t is within the ray.
+    #[inline(always)]
+    fn found(&mut self, item: PrimitiveRef, t: f64, uv: [f32; 2], t_max: f32) -> Verdict {
+        let t = t as f32;
+        if t > 0.0 && t <= t_max { self.consider(item, t, uv) } else { Verdict::Pass }
     }
 }
 

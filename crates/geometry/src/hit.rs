@@ -26,7 +26,7 @@ pub struct Hit {
     /// Index of the instance, or [`NO_INSTANCE`].
     pub instance: u32,
     /// Barycentric weights of the second and third vertex of a triangle; position on the patch for bilinear
-    /// patches; surface coordinates for quadrics.
+    /// patches; surface coordinates for quadrics, but nothing for whole spheres, where [`SurfacePoint::uv`] tells.
     pub uv: [f32; 2],
 }
 

@@ -1,86 +1,75 @@
-//! A flat triangle that emits, with what sampling it needs at hand: lamps are asked from everywhere, and the way over
-//! entity, mesh, indices and vertices costs as much as the sampling.
+//! Shapes that emit, with what sampling they need at hand: lamps are asked from everywhere, and the way over entity, mesh,
+//! indices and vertices costs as much as the sampling.
 
-use etendue_math::warp::{SphericalTriangle, sample_uniform_triangle};
-use etendue_math::{Normal3, Point2, Point3, Vector3};
+mod rectangle;
+mod triangle;
+
+use etendue_math::Point2;
+
+pub use rectangle::FlatRectangle;
+pub use triangle::FlatTriangle;
 
 use crate::Geometry;
-use crate::double;
 use crate::hit::{GeometryId, Reference, ShapeSample};
-use crate::light_sampling::{SPHERICAL_SAMPLING, area_density, solid_angle_density};
 use crate::shape::entity::Entity;
+use crate::shape::globe::Globe;
 
-/// A triangle without vertex normals, in world space.
+/// A primitive for quicker sampling, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FlatTriangle {
-    corners: [Point3; 3],
-    n: Normal3,
-    /// Bound of the absolute error of a sampled position, per coordinate.
-    p_error: f32,
+pub enum Lamp {
+    /// A triangle without vertex normals.
+    Triangle(FlatTriangle),
+    /// A rectangular patch without vertex normals.
+    Rectangle(FlatRectangle),
+    /// A whole sphere.
+    Sphere(Globe),
 }
 
 impl Geometry {
-    /// A triangle for quicker sampling; `None` for other shapes, triangles with vertex normals and those without area.
+    /// A primitive for quicker sampling; `None` for other shapes and those without area.
     #[must_use]
-    pub fn flat_triangle(&self, geometry: GeometryId, primitive: u32) -> Option<FlatTriangle> {
-        let Entity::Triangles(triangles) = self.entity(geometry) else { return None };
-        if !self.can_emit(geometry) || !triangles.mesh().normals.is_empty() {
+    pub fn lamp(&self, geometry: GeometryId, primitive: u32) -> Option<Lamp> {
+        if !self.can_emit(geometry) {
             return None;
         }
-        let n = triangles.emission_cone(primitive).0;
-        let corners = triangles.positions(primitive);
-        let size = double::largest_coordinate(corners.map(double::point)) as f32;
-        // Six roundings of numbers no larger than twice the coordinates.
-        let p_error = 6.0 * f32::EPSILON * size + f32::MIN_POSITIVE;
-        (n.as_vector().length_squared() > 0.0).then_some(FlatTriangle { corners, n, p_error })
+        match self.entity(geometry) {
+            Entity::Triangles(triangles) => FlatTriangle::new(triangles, primitive).map(Lamp::Triangle),
+            Entity::Patches(patches) => FlatRectangle::new(patches, primitive).map(Lamp::Rectangle),
+            Entity::Sphere(sphere) => Some(Lamp::Sphere(*sphere.globe())),
+            Entity::Quadric(_) => None,
+        }
     }
 }
 
-impl FlatTriangle {
-    /// A point as seen from `reference`, its density per steradian, and the weights of the second and third corner. The
-    /// sample has no texture coordinates.
+impl Lamp {
+    /// A point as seen from `reference`, its density per steradian, and its place on the primitive, given as in
+    /// [`crate::Hit::uv`]. The sample has no texture coordinates.
     #[inline(always)]
     #[must_use]
     pub fn sample_from(&self, reference: &Reference, u: Point2) -> Option<(ShapeSample, f32, [f32; 2])> {
-        let spherical = self.spherical(reference.p);
-        let [_, b1, b2] =
-            spherical.map_or_else(|| sample_uniform_triangle(u), |spherical| spherical.sample(u));
-        let [a, b, c] = self.corners;
-        let p = a + (b - a) * b1 + (c - a) * b2;
-        let offset = p - reference.p;
-        let (pdf_w, pdf_a) = match spherical {
-            Some(spherical) => (spherical.pdf_w(), area_density(spherical.pdf_w(), offset, self.n)),
-            None => (solid_angle_density(self.pdf_a(), offset, self.n), self.pdf_a()),
-        };
-        let sample = ShapeSample {
-            p,
-            p_error: Vector3::splat(self.p_error),
-            n: self.n,
-            uv: Point2::splat(0.0),
-            pdf_a,
-        };
-        (pdf_w > 0.0).then_some((sample, pdf_w, [b1, b2]))
-    }
-
-    /// The density per steradian of [`sample_from`](Self::sample_from) for a point `p` of the triangle.
-    #[inline(always)]
-    #[must_use]
-    pub fn pdf_from(&self, reference: &Reference, p: Point3) -> f32 {
-        match self.spherical(reference.p) {
-            Some(spherical) => spherical.pdf_w(),
-            None => solid_angle_density(self.pdf_a(), p - reference.p, self.n),
+        match self {
+            Self::Triangle(lamp) => lamp.sample_from(reference, u),
+            Self::Rectangle(lamp) => lamp.sample_from(reference, u),
+            Self::Sphere(lamp) => {
+                lamp.sample_from(reference, u).map(|(sample, pdf_w)| (sample, pdf_w, [0.0; 2]))
+            }
         }
     }
 
+    /// The density per steradian of [`sample_from`](Self::sample_from) for a point of the lamp.
     #[inline(always)]
-    fn spherical(&self, p: Point3) -> Option<SphericalTriangle> {
-        SphericalTriangle::new(self.corners, p)
-            .filter(|spherical| SPHERICAL_SAMPLING.contains(&spherical.solid_angle()))
+    #[must_use]
+    pub fn pdf_from(&self, reference: &Reference, p: etendue_math::Point3) -> f32 {
+        match self {
+            Self::Triangle(lamp) => lamp.pdf_from(reference, p),
+            Self::Rectangle(lamp) => lamp.pdf_from(reference, p),
+            Self::Sphere(lamp) => lamp.pdf_from(reference, p),
+        }
     }
 
-    #[inline(always)]
-    fn pdf_a(&self) -> f32 {
-        let [a, b, c] = self.corners;
-        2.0 / (b - a).cross(c - a).length()
+    /// True if the place that comes with a sample tells its texture coordinates.
+    #[must_use]
+    pub const fn has_places(&self) -> bool {
+        !matches!(self, Self::Sphere(_))
     }
 }

@@ -7,16 +7,19 @@
 mod cylinder;
 mod disk;
 pub(crate) mod entity;
+pub(crate) mod globe;
 mod patches;
 mod plane;
 mod quadric;
 mod sphere;
 mod triangles;
+mod whole_sphere;
 
 #[cfg(test)]
 mod tests;
 
-pub(crate) use patches::{entity_of, resolve};
+pub(crate) use patches::{Patches, RECTANGLE_SAMPLING, entity_of, resolve};
+pub(crate) use triangles::Triangles;
 
 use std::f64::consts::TAU;
 

@@ -26,7 +26,7 @@ pub use interval::{
     exponential_pdf, invert_exponential, invert_linear, invert_normal, invert_tent, linear_pdf, normal_pdf,
     sample_discrete, sample_exponential, sample_linear, sample_normal, sample_tent, tent_pdf,
 };
-pub use rectangle::{SphericalRectangle, sample_spherical_rectangle};
+pub use rectangle::{Rectangle, SphericalRectangle, sample_spherical_rectangle};
 pub use sphere::{
     invert_narrow_cone, invert_uniform_cone, invert_uniform_sphere, narrow_cone_pdf, sample_narrow_cone,
     sample_uniform_cone, sample_uniform_sphere, uniform_cone_pdf, uniform_sphere_pdf,

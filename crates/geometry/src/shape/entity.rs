@@ -8,9 +8,10 @@ use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray, Transform, Vector3};
 use super::cylinder::Cylinder;
 use super::disk::Disk;
 use super::patches::{self, Patches};
-use super::quadric::{Quadric, QuadricShape};
+use super::quadric::{self, Quadric, QuadricShape};
 use super::sphere::Sphere;
 use super::triangles::Triangles;
+use super::whole_sphere::WholeSphere;
 use super::{Candidates, LocalSurface, Shape};
 use crate::bvh::{BuildPrimitive, PrimitiveRef, append_pairs, intersect_triangle};
 use crate::double;
@@ -25,25 +26,32 @@ pub(crate) enum Entity {
     Triangles(Triangles),
     /// A mesh of patches.
     Patches(Patches),
-    /// A sphere, disk or cylinder.
+    /// A whole sphere.
+    Sphere(WholeSphere),
+    /// A stretched or cut sphere, disk or cylinder.
     Quadric(Box<Quadric>),
 }
 
 impl Entity {
     /// Places a shape.
     pub(crate) fn new(shape: Shape, group_from_shape: &Transform, reverse_orientation: bool) -> Self {
-        let quadric = |shape: QuadricShape| {
-            let map = double::affine(group_from_shape);
-            Self::Quadric(Box::new(Quadric::new(shape, map, reverse_orientation)))
-        };
+        let map = double::affine(group_from_shape);
+        let quadric =
+            |shape: QuadricShape| Self::Quadric(Box::new(Quadric::new(shape, map, reverse_orientation)));
         match shape {
             Shape::Triangles(mesh) => {
                 Self::Triangles(Triangles::new(mesh, group_from_shape, reverse_orientation))
             }
             Shape::Bilinear(mesh) => Self::Patches(Patches::new(mesh, group_from_shape, reverse_orientation)),
-            Shape::Sphere { radius, z_min, z_max, phi_max_rad } => quadric(QuadricShape::Sphere(
-                Sphere::new(radius.into(), z_min.into(), z_max.into(), phi_max_rad.into()),
-            )),
+            Shape::Sphere { radius, z_min, z_max, phi_max_rad } => {
+                let sphere = Sphere::new(radius.into(), z_min.into(), z_max.into(), phi_max_rad.into());
+                match quadric::similarity(&map) {
+                    Some(scale) if sphere.is_whole() => {
+                        Self::Sphere(WholeSphere::new(sphere.radius(), &map, scale, reverse_orientation))
+                    }
+                    _ => quadric(QuadricShape::Sphere(sphere)),
+                }
+            }
             Shape::Disk { height, radius, inner_radius, phi_max_rad } => quadric(QuadricShape::Disk(
                 Disk::new(height.into(), radius.into(), inner_radius.into(), phi_max_rad.into()),
             )),
@@ -71,9 +79,9 @@ impl Entity {
                     .filter(|&patch| patches.is_valid(patch))
                     .map(|patch| BuildPrimitive::item(reference(patch), patches.bounds(patch))),
             ),
-            Self::Quadric(quadric) => {
-                let bounds = quadric.bounds();
-                if bounds.min.is_finite() && bounds.max.is_finite() && quadric.area() > 0.0 {
+            Self::Sphere(_) | Self::Quadric(_) => {
+                let bounds = self.bounds(0);
+                if bounds.min.is_finite() && bounds.max.is_finite() && self.area(0) > 0.0 {
                     primitives.push(BuildPrimitive::item(reference(0), bounds));
                 }
             }
@@ -86,7 +94,7 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.positions(triangle).map(|p| [p.x, p.y, p.z]),
             Self::Patches(patches) => patches.half_corners(triangle).map(|p| [p.x, p.y, p.z]),
-            Self::Quadric(_) => [[f32::NAN; 3]; 3],
+            Self::Sphere(_) | Self::Quadric(_) => [[f32::NAN; 3]; 3],
         }
     }
 
@@ -98,7 +106,7 @@ impl Entity {
             Self::Patches(patches) => {
                 (patches.is_flat() && patches.is_valid(triangle / 2)).then(|| self.triangle(triangle))
             }
-            Self::Quadric(_) => None,
+            Self::Sphere(_) | Self::Quadric(_) => None,
         }
     }
 
@@ -107,7 +115,7 @@ impl Entity {
         let n = match self {
             Self::Triangles(_) => self.n_primitives(),
             Self::Patches(_) => 2 * self.n_primitives(),
-            Self::Quadric(_) => 0,
+            Self::Sphere(_) | Self::Quadric(_) => 0,
         };
         (0..n).into_par_iter().filter(|&t| self.valid_triangle(t).is_some()).count()
     }
@@ -116,7 +124,7 @@ impl Entity {
     pub(crate) fn check_vertices(&self, positions: &[Point3], normals: &[Normal3]) -> Result<(), MeshError> {
         let expected = match self {
             Self::Triangles(triangles) => triangles.mesh().positions.len(),
-            Self::Patches(_) | Self::Quadric(_) => 0,
+            Self::Patches(_) | Self::Sphere(_) | Self::Quadric(_) => 0,
         };
         if positions.len() != expected {
             return Err(MeshError::WrongLength { array: "positions", found: positions.len(), expected });
@@ -137,7 +145,7 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.mesh().indices.len() as u32,
             Self::Patches(patches) => patches.mesh().indices.len() as u32,
-            Self::Quadric(_) => 1,
+            Self::Sphere(_) | Self::Quadric(_) => 1,
         }
     }
 
@@ -151,6 +159,7 @@ impl Entity {
                 [candidate, None]
             }
             Self::Patches(patches) => patches.intersect(primitive, ray),
+            Self::Sphere(sphere) => sphere.intersect(ray),
             Self::Quadric(quadric) => quadric.intersect(ray),
         }
     }
@@ -161,6 +170,7 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.point(primitive, uv),
             Self::Patches(patches) => patches.point(primitive, uv),
+            Self::Sphere(sphere) => sphere.point(ray, t),
             Self::Quadric(quadric) => {
                 let surface = quadric.surface(ray, t, uv);
                 (surface.p, surface.point)
@@ -173,6 +183,7 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.surface(primitive, uv),
             Self::Patches(patches) => patches.surface(primitive, uv),
+            Self::Sphere(sphere) => sphere.surface(ray, t),
             Self::Quadric(quadric) => quadric.surface(ray, t, uv),
         }
     }
@@ -182,6 +193,8 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.uv(primitive, uv),
             Self::Patches(patches) => patches.uv(primitive, uv),
+            // The hit of a ray does not tell; `point` does.
+            Self::Sphere(_) => Point2::default(),
             Self::Quadric(_) => Point2::new(uv[0], uv[1]),
         }
     }
@@ -191,6 +204,7 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.bounds(primitive),
             Self::Patches(patches) => patches.bounds(primitive),
+            Self::Sphere(sphere) => sphere.bounds(),
             Self::Quadric(quadric) => quadric.bounds(),
         }
     }
@@ -200,6 +214,7 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.area(primitive),
             Self::Patches(patches) => patches.area(primitive),
+            Self::Sphere(sphere) => sphere.globe().area(),
             Self::Quadric(quadric) => quadric.area(),
         }
     }
@@ -209,6 +224,7 @@ impl Entity {
         let (axis, cosine) = match self {
             Self::Triangles(triangles) => triangles.emission_cone(primitive),
             Self::Patches(patches) => patches.emission_cone(primitive),
+            Self::Sphere(_) => WholeSphere::emission_cone(),
             Self::Quadric(quadric) => quadric.emission_cone(),
         };
         (axis.as_vector(), cosine)
@@ -219,6 +235,7 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.sample_area(primitive, u),
             Self::Patches(patches) => patches.sample_area(primitive, u),
+            Self::Sphere(sphere) => Some(sphere.sample_area(u)),
             Self::Quadric(quadric) => quadric.sample_area(u),
         }
     }
@@ -234,7 +251,8 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.sample_solid_angle(primitive, reference.p, u),
             Self::Patches(patches) => patches.sample_solid_angle(primitive, reference.p, u),
-            Self::Quadric(quadric) => quadric.sample_cone(reference.p, u),
+            Self::Sphere(sphere) => sphere.sample_cone(reference, u),
+            Self::Quadric(_) => None,
         }
     }
 
@@ -244,7 +262,8 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.solid_angle_pdf(primitive, reference.p),
             Self::Patches(patches) => patches.solid_angle_pdf(primitive, reference.p),
-            Self::Quadric(quadric) => quadric.cone_pdf(reference.p),
+            Self::Sphere(sphere) => sphere.globe().cone_pdf(reference.p),
+            Self::Quadric(_) => None,
         }
     }
 
@@ -255,6 +274,7 @@ impl Entity {
                 (1.0 / triangles.area(primitive), triangles.emission_cone(primitive).0)
             }
             Self::Patches(patches) => (patches.pdf_a(primitive, uv), patches.normal(primitive, uv)),
+            Self::Sphere(sphere) => (1.0 / sphere.globe().area(), sphere.point(ray, t).1.ng),
             Self::Quadric(quadric) => {
                 let n = quadric.surface(ray, t, [0.0; 2]).point.ng;
                 (quadric.pdf_a(n), n)
@@ -269,6 +289,7 @@ impl Entity {
             Self::Patches(patches) => {
                 patches.position_of(primitive, p, n).map_or(0.0, |uv| patches.pdf_a(primitive, uv))
             }
+            Self::Sphere(sphere) => 1.0 / sphere.globe().area(),
             Self::Quadric(quadric) => quadric.pdf_a(n),
         }
     }
@@ -278,6 +299,7 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.mesh().memory_bytes(),
             Self::Patches(patches) => patches.mesh().memory_bytes(),
+            Self::Sphere(_) => 0,
             Self::Quadric(_) => size_of::<Quadric>(),
         }
     }
@@ -288,7 +310,7 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => counts.n_triangles += triangles.mesh().indices.len(),
             Self::Patches(patches) => counts.n_patches += patches.mesh().indices.len(),
-            Self::Quadric(_) => counts.n_quadrics += 1,
+            Self::Sphere(_) | Self::Quadric(_) => counts.n_quadrics += 1,
         }
     }
 }

@@ -57,7 +57,7 @@ pub(crate) fn resolve(triangle: PrimitiveRef, b: [f32; 2]) -> (PrimitiveRef, [f3
 }
 
 /// Solid angles in which rectangles are sampled by direction, in steradians.
-const SPHERICAL_SAMPLING: std::ops::Range<f32> = 1e-4..6.22;
+pub(crate) const RECTANGLE_SAMPLING: std::ops::Range<f32> = 1e-4..6.22;
 
 /// Corners p00, p10, p01, p11.
 type Corners = [DVec3; 4];
@@ -115,6 +115,12 @@ impl Patches {
     /// True if the hierarchy holds the halves of patches, as triangles.
     pub(crate) const fn is_flat(&self) -> bool {
         self.is_flat
+    }
+
+    /// The corners of a patch of flat ones if it is a rectangle with an area and without vertex normals.
+    pub(crate) fn flat_rectangle(&self, patch: u32) -> Option<[Point3; 4]> {
+        let is_one = self.is_flat && self.mesh.normals.is_empty() && rectangle(&self.corners(patch));
+        (is_one && self.is_valid(patch)).then(|| self.positions(patch))
     }
 
     /// Corners of a half, of which each patch has two.
@@ -355,7 +361,7 @@ impl Patches {
         }
         let [corner, end_u, end_v] = [c[0], c[1], c[2]].map(double::to_point);
         let spherical = SphericalRectangle::new(p, corner, end_u - corner, end_v - corner)?;
-        SPHERICAL_SAMPLING.contains(&spherical.solid_angle()).then_some(spherical)
+        RECTANGLE_SAMPLING.contains(&spherical.solid_angle()).then_some(spherical)
     }
 
     /// A point uniform in solid angle from `p` with its density per steradian; `None` where sampling by area is

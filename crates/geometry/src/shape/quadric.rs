@@ -1,9 +1,7 @@
 //! What spheres, disks and cylinders share: they are intersected and sampled in their own space in double
 //! precision, then carried to the space of the group by an affine map.
 
-use std::f64::consts::TAU;
-
-use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray};
+use etendue_math::{Bounds3, Normal3, Point2, Ray};
 use glam::{DAffine3, DVec3};
 
 use super::cylinder::Cylinder;
@@ -69,14 +67,6 @@ impl QuadricShape {
             Self::Sphere(shape) => shape.surface(p),
             Self::Disk(shape) => shape.surface(p),
             Self::Cylinder(shape) => shape.surface(p),
-        }
-    }
-
-    fn uv(&self, p: DVec3) -> [f64; 2] {
-        match self {
-            Self::Sphere(shape) => shape.uv(p),
-            Self::Disk(shape) => shape.uv(p),
-            Self::Cylinder(shape) => shape.uv(p),
         }
     }
 
@@ -233,56 +223,6 @@ impl Quadric {
         double::to_normal(self.normal_map.apply(n, [DVec3::ZERO; 2]).0 * self.sign)
     }
 
-    /// Centre and radius if this is a whole sphere in the space of the group as well.
-    fn whole_sphere(&self) -> Option<(DVec3, f64)> {
-        match (&self.shape, self.scale) {
-            (QuadricShape::Sphere(sphere), Some(scale)) if sphere.is_whole() => {
-                Some((self.group_from_shape.translation, sphere.radius() * scale))
-            }
-            _ => None,
-        }
-    }
-
-    /// The cone of directions from `p` to a whole sphere, unless `p` is inside or may be but for rounding: a point of
-    /// the sphere sees all of its inside, on whichever side its coordinates were rounded to.
-    fn cone(&self, p: Point3) -> Option<Cone> {
-        let (centre, radius) = self.whole_sphere()?;
-        let to_centre = centre - double::point(p);
-        if to_centre.length() <= radius + double::vector(double::surface_error(p, self.size)).length() {
-            return None;
-        }
-        let sin2_max = radius * radius / to_centre.length_squared();
-        if sin2_max >= 1.0 - 1e-9 || !sin2_max.is_finite() {
-            return None;
-        }
-        let one_minus_cos = sin2_max / (1.0 + (1.0 - sin2_max).sqrt());
-        let pdf_w = (1.0 / (TAU * one_minus_cos)) as f32;
-        pdf_w.is_finite().then_some(Cone { centre, radius, to_centre, one_minus_cos, pdf_w })
-    }
-
-    /// A point uniform in solid angle from `p` with its density per steradian; `None` where sampling by area is to
-    /// be used.
-    pub(crate) fn sample_cone(&self, p: Point3, u: Point2) -> Option<(ShapeSample, f32)> {
-        let cone = self.cone(p)?;
-        let n = cone.normal(u);
-        let local = self.shape.surface(self.shape_from_group.transform_vector3(n));
-        let p = double::to_point(cone.centre + n * cone.radius);
-        let uv = self.shape.uv(local.p);
-        let sample = ShapeSample {
-            p,
-            p_error: double::surface_error(p, self.size),
-            n: double::to_normal(n * self.sign),
-            uv: Point2::new(uv[0] as f32, uv[1] as f32),
-            pdf_a: 0.0,
-        };
-        Some((sample, cone.pdf_w))
-    }
-
-    /// The density per steradian of [`sample_cone`](Self::sample_cone).
-    pub(crate) fn cone_pdf(&self, p: Point3) -> Option<f32> {
-        self.cone(p).map(|cone| cone.pdf_w)
-    }
-
     /// Axis and cosine of a cone that holds all normals.
     pub(crate) fn emission_cone(&self) -> (Normal3, f32) {
         match &self.shape {
@@ -292,38 +232,8 @@ impl Quadric {
     }
 }
 
-/// A sphere seen from outside.
-#[derive(Clone, Copy, Debug)]
-struct Cone {
-    centre: DVec3,
-    radius: f64,
-    to_centre: DVec3,
-    /// 1 - cosine of the half angle.
-    one_minus_cos: f64,
-    pdf_w: f32,
-}
-
-impl Cone {
-    /// The outward normal of the sphere where a direction uniform in the cone first meets it.
-    fn normal(&self, u: Point2) -> DVec3 {
-        let one_minus_cos = self.one_minus_cos * f64::from(u.x);
-        let cos_theta = 1.0 - one_minus_cos;
-        let sin2_theta = one_minus_cos * (2.0 - one_minus_cos);
-        let distance = self.to_centre.length();
-        // Angle at the centre between the viewer and the point.
-        let sin2_max = (self.radius / distance).powi(2);
-        let cos_beta = (1.0 - sin2_theta / sin2_max).max(0.0).sqrt();
-        let cos_alpha = (sin2_theta / sin2_max.sqrt() + cos_theta * cos_beta).clamp(-1.0, 1.0);
-        let sin_alpha = (1.0 - cos_alpha * cos_alpha).max(0.0).sqrt();
-        let (sin_phi, cos_phi) = (TAU * f64::from(u.y)).sin_cos();
-        let z = -self.to_centre / distance;
-        let (x, y) = z.any_orthonormal_pair();
-        x * (sin_alpha * cos_phi) + y * (sin_alpha * sin_phi) + z * cos_alpha
-    }
-}
-
 /// The factor by which a map scales all lengths, if there is one.
-fn similarity(map: &DAffine3) -> Option<f64> {
+pub(super) fn similarity(map: &DAffine3) -> Option<f64> {
     let m = map.matrix3;
     let scale = m.determinant().abs().cbrt();
     let columns = [m.x_axis, m.y_axis, m.z_axis];

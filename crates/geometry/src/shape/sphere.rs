@@ -39,6 +39,11 @@ impl Sphere {
         }
     }
 
+    /// A sphere of which nothing is cut off.
+    pub(crate) fn whole(radius: f64) -> Self {
+        Self::new(radius, -radius, radius, TAU)
+    }
+
     pub(crate) const fn radius(&self) -> f64 {
         self.radius
     }

@@ -11,7 +11,7 @@
 
 use std::f32::consts::PI;
 
-use etendue_geometry::{FlatTriangle, Geometry, GeometryId, Reference, ShapeSample};
+use etendue_geometry::{Geometry, GeometryId, Lamp, Reference, ShapeSample};
 use etendue_math::{Frame, Normal3, Point2, Point3, Ray, Vector3, warp};
 use etendue_spectrum::{Sampled, Spectrum, SpectrumTables, Wavelengths};
 
@@ -185,7 +185,7 @@ pub struct AreaLight {
     pub emission: AreaEmissionId,
     is_visible: bool,
     /// For the usual lamp a short way to its points.
-    triangle: Option<FlatTriangle>,
+    lamp: Option<Lamp>,
 }
 
 impl AreaLight {
@@ -198,9 +198,9 @@ impl AreaLight {
         emission: AreaEmissionId,
         tables: &LightTables,
     ) -> Self {
-        let is_visible = tables.emissions[emission.0 as usize].is_visible;
-        let triangle = geometry.flat_triangle(id, primitive);
-        Self { geometry: id, primitive, emission, is_visible, triangle }
+        let emitted = &tables.emissions[emission.0 as usize];
+        let lamp = geometry.lamp(id, primitive).filter(|lamp| !emitted.varies() || lamp.has_places());
+        Self { geometry: id, primitive, emission, is_visible: emitted.is_visible, lamp }
     }
 
     /// A point as seen from `reference`, with its density per steradian; with texture coordinates if `varies`.
@@ -212,12 +212,12 @@ impl AreaLight {
         u: Point2,
         varies: bool,
     ) -> Option<(ShapeSample, f32)> {
-        let Some(triangle) = &self.triangle else {
+        let Some(lamp) = &self.lamp else {
             return context.geometry.sample_from(self.geometry, self.primitive, reference, u);
         };
-        let (mut sample, pdf_w, b) = triangle.sample_from(reference, u)?;
+        let (mut sample, pdf_w, place) = lamp.sample_from(reference, u)?;
         if varies {
-            sample.uv = context.geometry.texture_coordinates(self.geometry, self.primitive, b);
+            sample.uv = context.geometry.texture_coordinates(self.geometry, self.primitive, place);
         }
         Some((sample, pdf_w))
     }
@@ -288,8 +288,8 @@ impl AreaLight {
         if !self.is_visible {
             return 0.0;
         }
-        match &self.triangle {
-            Some(triangle) => triangle.pdf_from(reference, p),
+        match &self.lamp {
+            Some(lamp) => lamp.pdf_from(reference, p),
             None => context.geometry.pdf_from_point(self.geometry, self.primitive, reference, p, ng),
         }
     }

@@ -16,7 +16,7 @@ fn any_size_is_precise() {
             let Some(rectangle) = SphericalRectangle::new(Point3::ORIGIN, corner, edge_x, edge_y) else {
                 continue;
             };
-            if rectangle.z0.abs() < 1e-2 {
+            if rectangle.h < 1e-2 {
                 continue;
             }
             checked += 1;
