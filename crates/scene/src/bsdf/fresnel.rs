@@ -112,5 +112,12 @@ pub fn fresnel_schlick(cos_i: f32, eta: f32) -> f32 {
     }
     let cos = if eta < 1.0 { safe_sqrt(1.0 - sin2_t) } else { cos_i };
     let f0 = sqr((eta - 1.0) / (eta + 1.0));
-    f0 + (1.0 - f0) * (1.0 - cos).powi(5)
+    f0 + (1.0 - f0) * schlick_weight(cos)
+}
+
+/// `(1 - cos)⁵`: how far Schlick's fit is from the reflectance along the normal to 1.
+#[inline]
+#[must_use]
+pub fn schlick_weight(cos: f32) -> f32 {
+    (1.0 - cos).clamp(0.0, 1.0).powi(5)
 }
