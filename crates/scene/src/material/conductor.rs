@@ -23,27 +23,9 @@ pub struct ConductorMaterial {
 impl ConductorMaterial {
     /// What scene files may say.
     pub const PARAMETERS: &'static [ParameterSpec] = &[
-        ParameterSpec {
-            name: "eta",
-            kind: "spectrum texture",
-            default: "metal-Cu-eta",
-            unit: "",
-            doc: "Real part of the index of refraction.",
-        },
-        ParameterSpec {
-            name: "k",
-            kind: "spectrum texture",
-            default: "metal-Cu-k",
-            unit: "",
-            doc: "Imaginary part of the index of refraction (absorption).",
-        },
-        ParameterSpec {
-            name: "reflectance",
-            kind: "spectrum texture",
-            default: "",
-            unit: "",
-            doc: "Reflectance at normal incidence, in place of eta and k.",
-        },
+        spec::METAL_ETA,
+        spec::METAL_K,
+        spec::METAL_REFLECTANCE,
         spec::ROUGHNESS,
         spec::U_ROUGHNESS,
         spec::V_ROUGHNESS,

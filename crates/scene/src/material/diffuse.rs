@@ -18,17 +18,8 @@ pub struct DiffuseMaterial {
 
 impl DiffuseMaterial {
     /// What scene files may say.
-    pub const PARAMETERS: &'static [ParameterSpec] = &[
-        ParameterSpec {
-            name: "reflectance",
-            kind: "spectrum texture",
-            default: "0.5",
-            unit: "",
-            doc: "Fraction of light reflected, in [0, 1].",
-        },
-        spec::DISPLACEMENT,
-        spec::NORMAL_MAP,
-    ];
+    pub const PARAMETERS: &'static [ParameterSpec] =
+        &[spec::REFLECTANCE, spec::DISPLACEMENT, spec::NORMAL_MAP];
 
     pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         Self {

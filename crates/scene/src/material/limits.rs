@@ -4,8 +4,16 @@
 
 use etendue_spectrum::{LAMBDA_MAX_NM, LAMBDA_MIN_NM, Spectrum};
 
+use super::MaterialContext;
 use crate::parameters::{Parameters, SpectrumRole};
-use crate::texture::{FloatTexture, SpectrumTexture};
+use crate::texture::{FloatTexture, SpectrumTexture, Textures};
+
+/// Exponents of highlights.
+pub(super) const EXPONENTS: [f32; 2] = [0.0, 1e6];
+/// Slopes of facets.
+pub(super) const SLOPES: [f32; 2] = [1e-3, 1.0];
+/// Parts of a whole.
+pub(super) const SHARES: [f32; 2] = [0.0, 1.0];
 
 /// Slack for sums of spectra made from colours.
 const ROUNDING: f32 = 1e-3;
@@ -27,38 +35,98 @@ pub(super) fn albedo(p: &mut Parameters<'_, '_>, name: &'static str, default: f3
 }
 
 /// Warns if two reflectances of one surface sum to more than 1 at some wavelength.
-pub(super) fn sum_of_albedos(p: &mut Parameters<'_, '_>, names: [&str; 2], textures: [SpectrumTexture; 2]) {
-    let [Some(a), Some(b)] = textures.map(SpectrumTexture::constant) else { return };
+pub(super) fn sum_of_albedos(
+    p: &mut Parameters<'_, '_>,
+    [a, b]: [&'static str; 2],
+    textures: [SpectrumTexture; 2],
+) {
+    let [Some(first), Some(second)] = textures.map(SpectrumTexture::constant) else { return };
     let tables = &p.context.spectra;
     let at = |spectrum: Spectrum, nm| spectrum.at(tables, nm).clamp(0.0, 1.0);
-    let sum = wavelengths().map(|nm| at(a, nm) + at(b, nm)).fold(0.0, f32::max);
+    let sum = wavelengths().map(|nm| at(first, nm) + at(second, nm)).fold(0.0, f32::max);
     if sum > 1.0 + ROUNDING {
-        let [a, b] = names;
-        let span = if p.has("ks") { p.span_of(b) } else { p.span_of(a) };
+        let span = if p.has(b) { p.span_of(b) } else { p.span_of(a) };
         let message =
             format!("\"{a}\" and \"{b}\" sum to {sum}: more light than arrives; both are scaled to sum to 1");
         p.diagnostics().warning(span, message);
     }
 }
 
-/// A number that may be textured, in [`least`, `greatest`]; a constant outside is a warning.
+/// A number that may be textured, in `range`; a constant outside is a warning.
 pub(super) fn float_within(
     p: &mut Parameters<'_, '_>,
     name: &'static str,
     default: f32,
-    [least, greatest]: [f32; 2],
+    range: [f32; 2],
 ) -> FloatTexture {
-    let texture = p.float_texture(name, default);
-    let Some(value) = texture.constant() else { return texture };
-    if (least..=greatest).contains(&value) {
-        return texture;
+    match p.float_texture(name, default) {
+        FloatTexture::Constant(value) => FloatTexture::Constant(checked(p, name, value, range)),
+        texture @ FloatTexture::Node(_) => texture,
     }
-    let clamped = if value.is_nan() { default } else { value.clamp(least, greatest) };
+}
+
+/// A number in `range`; one outside is a warning.
+pub(super) fn constant_within(
+    p: &mut Parameters<'_, '_>,
+    name: &'static str,
+    default: f32,
+    range: [f32; 2],
+) -> f32 {
+    let value = p.float(name, default);
+    checked(p, name, value, range)
+}
+
+/// The value, or the nearest in the range, with a warning.
+fn checked(p: &mut Parameters<'_, '_>, name: &str, value: f32, range: [f32; 2]) -> f32 {
+    let [least, greatest] = range;
+    if (least..=greatest).contains(&value) {
+        return value;
+    }
+    let taken = clamp(value, range);
     let span = p.span_of(name);
     let message =
-        format!("\"{name}\" is {value}, but must be in [{least}, {greatest}]; it is taken as {clamped}");
+        format!("\"{name}\" is {value}, but must be in [{least}, {greatest}]; it is taken as {taken}");
     p.diagnostics().warning(span, message);
-    FloatTexture::Constant(clamped)
+    taken
+}
+
+/// One number for each tangent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PerTangent {
+    /// Along the first tangent.
+    pub u: FloatTexture,
+    /// Along the second tangent.
+    pub v: FloatTexture,
+}
+
+impl PerTangent {
+    /// From the names of the parameters for both, the first and the second tangent.
+    pub(super) fn build(
+        p: &mut Parameters<'_, '_>,
+        [both, u, v]: [&'static str; 3],
+        default: f32,
+        range: [f32; 2],
+    ) -> Self {
+        let both = float_within(p, both, default, range);
+        let mut along = |name| if p.has(name) { float_within(p, name, default, range) } else { both };
+        Self { u: along(u), v: along(v) }
+    }
+
+    /// Both numbers at a point.
+    #[inline]
+    pub(super) fn at(&self, textures: &Textures, ctx: &MaterialContext, range: [f32; 2]) -> [f32; 2] {
+        [self.u, self.v].map(|texture| clamp(textures.eval_float(texture, &ctx.texture), range))
+    }
+
+    /// True if both are the same everywhere.
+    pub(super) fn is_isotropic(&self) -> bool {
+        matches!((self.u, self.v), (FloatTexture::Constant(u), FloatTexture::Constant(v)) if u == v)
+    }
+}
+
+/// A grey.
+pub(super) const fn grey(value: f32) -> SpectrumTexture {
+    SpectrumTexture::Constant(Spectrum::Constant(value))
 }
 
 /// A value of a texture, pulled into its range.

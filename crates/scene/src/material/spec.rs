@@ -46,6 +46,12 @@ pub(super) const MAX_DEPTH: ParameterSpec =
 pub(super) const N_SAMPLES: ParameterSpec = spec("nsamples", "integer", "1", "Walks per evaluation.");
 pub(super) const EXPONENT: ParameterSpec =
     spec("exponent", "float texture", "30", "Exponent of the highlight, 0 to 1e6; larger is narrower.");
-
-/// Exponents of highlights.
-pub(super) const EXPONENTS: [f32; 2] = [0.0, 1e6];
+pub(super) const EXPONENT_100: ParameterSpec = ParameterSpec { default: "100", ..EXPONENT };
+pub(super) const REFLECTANCE: ParameterSpec =
+    spec("reflectance", "spectrum texture", "0.5", "Fraction of light reflected, in [0, 1].");
+pub(super) const METAL_ETA: ParameterSpec =
+    spec("eta", "spectrum texture", "metal-Cu-eta", "Real part of the index of refraction.");
+pub(super) const METAL_K: ParameterSpec =
+    spec("k", "spectrum texture", "metal-Cu-k", "Imaginary part of the index of refraction (absorption).");
+pub(super) const METAL_REFLECTANCE: ParameterSpec =
+    spec("reflectance", "spectrum texture", "", "Reflectance at normal incidence, in place of eta and k.");

@@ -156,6 +156,8 @@ fn documented_parameters_are_the_known_ones() {
                 "string" => continue,
                 "bool" => Value::Bools(vec![true]),
                 "integer" => Value::Integers(vec![3]),
+                "float[]" => Value::Floats(vec![-1.0, -1.0, 1.0, 20.0]),
+                _ if parameter.name == "strength" => floats(0.5),
                 _ if parameter.name == "reflectance" && parameter.default.is_empty() => continue,
                 _ => floats(0.3),
             };
@@ -268,6 +270,30 @@ fn classic_defaults() {
         Classic::Phong(classic::Phong { kd, ks, exponent: 30.0, form: classic::PhongForm::Lewis })
     );
     assert_eq!(classic("blinnphong"), Classic::BlinnPhong(classic::BlinnPhong { kd, ks, exponent: 30.0 }));
+    for (name, distribution) in [
+        ("torrancesparrow", classic::FacetDistribution::Gaussian),
+        ("cooktorrance", classic::FacetDistribution::Beckmann),
+    ] {
+        let Classic::VGroove(groove) = classic(name) else { panic!("{name}") };
+        assert!(matches!(groove.fresnel, classic::FacetFresnel::Exact { .. }));
+        assert_eq!((groove.kd, groove.strength, groove.m), (Sampled::ZERO, 1.0, 0.2));
+        assert_eq!(groove.distribution, distribution);
+    }
+    let cylinders = classic::PoulinFournier { kd, ks, exponent: 100.0, spacing: 2.0, height: 1.0 };
+    assert_eq!(classic("poulinfournier"), Classic::PoulinFournier(cylinders));
+    let form = classic::WardForm::Bounded;
+    assert_eq!(classic("ward"), Classic::Ward(classic::Ward { kd, ks, alpha_x: 0.15, alpha_y: 0.15, form }));
+    let form = classic::SchlickForm::Conserving;
+    let schlick = classic::Schlick { reflectance: kd, roughness: 0.5, isotropy: 1.0, form };
+    assert_eq!(classic("schlick"), Classic::Schlick(schlick));
+    let form = classic::OrenNayarForm::Full;
+    let clay = classic::OrenNayar { reflectance: kd, sigma_rad: 20.0_f32.to_radians(), form };
+    assert_eq!(classic("orennayar"), Classic::OrenNayar(clay));
+    let Classic::Lafortune(lafortune) = classic("lafortune") else { panic!("not Lafortune's") };
+    assert_eq!(lafortune.lobes[0].exponent, 20.0);
+    assert_eq!(lafortune.lobes[1], classic::LafortuneLobe::default());
+    let Classic::AshikhminShirley(coat) = classic("ashikhminshirley") else { panic!("no coat") };
+    assert_eq!((coat.exponent_u, coat.exponent_v, coat.ks), (100.0, 100.0, Sampled::splat(0.05)));
 }
 
 /// Numbers outside their range are reported, with what is taken in their place.

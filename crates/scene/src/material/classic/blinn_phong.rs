@@ -26,13 +26,13 @@ impl BlinnPhongMaterial {
     pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
         Self {
             colors: LobeColors::build(p),
-            exponent: limits::float_within(p, "exponent", 30.0, spec::EXPONENTS),
+            exponent: limits::float_within(p, "exponent", 30.0, limits::EXPONENTS),
         }
     }
 
     pub(super) fn bsdf(&self, textures: &Textures, ctx: &MaterialContext, lambda: &Wavelengths) -> Classic {
         let (kd, ks) = self.colors.at(textures, ctx, lambda);
-        let exponent = limits::clamp(textures.eval_float(self.exponent, &ctx.texture), spec::EXPONENTS);
+        let exponent = limits::clamp(textures.eval_float(self.exponent, &ctx.texture), limits::EXPONENTS);
         Classic::BlinnPhong(BlinnPhong { kd, ks, exponent })
     }
 

@@ -38,16 +38,26 @@ impl LobeColors {
     }
 
     /// Both at a point.
-    #[inline]
     pub(super) fn at(
         &self,
         textures: &Textures,
         ctx: &MaterialContext,
         lambda: &Wavelengths,
     ) -> (Sampled, Sampled) {
+        self.with_gain(1.0, textures, ctx, lambda)
+    }
+
+    /// Both at a point, for a highlight whose albedo is up to `gain` times its strength.
+    pub(super) fn with_gain(
+        &self,
+        gain: f32,
+        textures: &Textures,
+        ctx: &MaterialContext,
+        lambda: &Wavelengths,
+    ) -> (Sampled, Sampled) {
         let value = |texture| textures.eval_spectrum(texture, &ctx.texture, lambda).clamp(0.0, 1.0);
         let (kd, ks) = (value(self.kd), value(self.ks));
-        let excess = (kd + ks).max(Sampled::ONE);
+        let excess = (kd + ks * gain).max(Sampled::ONE);
         (kd / excess, ks / excess)
     }
 

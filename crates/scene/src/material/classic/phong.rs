@@ -41,14 +41,14 @@ impl PhongMaterial {
         let forms = [("lewis", PhongForm::Lewis), ("illumination", PhongForm::Illumination)];
         Self {
             colors: LobeColors::build(p),
-            exponent: limits::float_within(p, "exponent", 30.0, spec::EXPONENTS),
+            exponent: limits::float_within(p, "exponent", 30.0, limits::EXPONENTS),
             form: p.choice("form", "lewis", &forms),
         }
     }
 
     pub(super) fn bsdf(&self, textures: &Textures, ctx: &MaterialContext, lambda: &Wavelengths) -> Classic {
         let (kd, ks) = self.colors.at(textures, ctx, lambda);
-        let exponent = limits::clamp(textures.eval_float(self.exponent, &ctx.texture), spec::EXPONENTS);
+        let exponent = limits::clamp(textures.eval_float(self.exponent, &ctx.texture), limits::EXPONENTS);
         Classic::Phong(Phong { kd, ks, exponent, form: self.form })
     }
 
