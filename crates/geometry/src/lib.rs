@@ -31,7 +31,7 @@ pub use geometry::{Geometry, GeometryCounts};
 pub use hit::{
     GeometryId, Hit, NO_INSTANCE, ObjectId, Reference, ShapeSample, SurfaceDerivatives, SurfacePoint,
 };
-pub use lamp::{FlatRectangle, FlatTriangle, Lamp};
+pub use lamp::{FlatLamp, Lamp};
 pub use mesh::{BilinearMesh, MeshError, TriangleMesh};
 pub use refit::MovedVertices;
 pub use shape::Shape;

@@ -18,7 +18,7 @@ mod whole_sphere;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use patches::{Patches, RECTANGLE_SAMPLING, entity_of, resolve};
+pub(crate) use patches::{Patches, entity_of, resolve};
 pub(crate) use triangles::Triangles;
 
 use std::f64::consts::TAU;

@@ -20,8 +20,37 @@ pub struct ShapeAttributes {
     pub material: MaterialId,
     /// Share of rays that meet it; `None` for all.
     pub alpha: Option<FloatTexture>,
-    /// The light of its first primitive, if it emits; those of the other primitives follow.
-    pub first_light: Option<LightId>,
+    /// Its lights, if it emits.
+    pub lights: Option<ShapeLights>,
+}
+
+/// The lights of an emissive shape: one for each primitive, or one for the whole of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShapeLights {
+    first: LightId,
+    /// From the light of a primitive to that of the next.
+    step: u32,
+}
+
+impl ShapeLights {
+    /// A light for each primitive, of which this is the first.
+    #[must_use]
+    pub const fn each(first: LightId) -> Self {
+        Self { first, step: 1 }
+    }
+
+    /// One light for all primitives.
+    #[must_use]
+    pub const fn whole(light: LightId) -> Self {
+        Self { first: light, step: 0 }
+    }
+
+    /// The light that a primitive belongs to.
+    #[inline]
+    #[must_use]
+    pub const fn of(self, primitive: u32) -> LightId {
+        LightId(self.first.0 + self.step * primitive)
+    }
 }
 
 /// A point on a surface as a path finds it.
@@ -173,7 +202,7 @@ impl Scene {
             wo: -ray.direction,
             time: ray.time,
             material: attributes.material,
-            light: attributes.first_light.map(|first| LightId(first.0 + hit.primitive)),
+            light: attributes.lights.map(|lights| lights.of(hit.primitive)),
         }
     }
 

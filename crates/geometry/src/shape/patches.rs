@@ -57,7 +57,7 @@ pub(crate) fn resolve(triangle: PrimitiveRef, b: [f32; 2]) -> (PrimitiveRef, [f3
 }
 
 /// Solid angles in which rectangles are sampled by direction, in steradians.
-pub(crate) const RECTANGLE_SAMPLING: std::ops::Range<f32> = 1e-4..6.22;
+const RECTANGLE_SAMPLING: std::ops::Range<f32> = 1e-4..6.22;
 
 /// Corners p00, p10, p01, p11.
 type Corners = [DVec3; 4];
@@ -117,12 +117,6 @@ impl Patches {
         self.is_flat
     }
 
-    /// The corners of a patch of flat ones if it is a rectangle with an area and without vertex normals.
-    pub(crate) fn flat_rectangle(&self, patch: u32) -> Option<[Point3; 4]> {
-        let is_one = self.is_flat && self.mesh.normals.is_empty() && rectangle(&self.corners(patch));
-        (is_one && self.is_valid(patch)).then(|| self.positions(patch))
-    }
-
     /// Corners of a half, of which each patch has two.
     pub(crate) fn half_corners(&self, half: u32) -> [Point3; 3] {
         flat::corners(self.positions(half / 2), half % 2)
@@ -132,7 +126,7 @@ impl Patches {
         &self.mesh
     }
 
-    fn positions(&self, patch: u32) -> [Point3; 4] {
+    pub(crate) fn positions(&self, patch: u32) -> [Point3; 4] {
         self.mesh.indices[patch as usize].map(|vertex| self.mesh.positions[vertex as usize])
     }
 

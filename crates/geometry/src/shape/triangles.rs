@@ -220,6 +220,14 @@ impl Triangles {
         (self.geometric_normal(triangle, &corners, [1.0 / 3.0; 3]).0, 1.0)
     }
 
+    /// The normal, where the vertex normals, if there are any, all lie on its side.
+    pub(crate) fn side(&self, triangle: u32) -> Option<Normal3> {
+        let n = self.emission_cone(triangle).0;
+        let normals = self.normals(triangle);
+        let agree = normals.is_none_or(|normals| normals.iter().all(|vertex| vertex.dot(n) > 0.0));
+        agree.then_some(n)
+    }
+
     /// A point, uniform in area.
     pub(crate) fn sample_area(&self, triangle: u32, u: Point2) -> Option<ShapeSample> {
         let area = area(&self.corners(triangle));

@@ -6,6 +6,7 @@ use crate::document::Value;
 use crate::light::{
     AreaLight, Light, LightContext, LightId, LightSampler, LightSamplerKind, LightTables, SceneSphere,
 };
+use crate::scene::ShapeLights;
 use crate::texture::FloatTexture;
 
 use super::{Builder, Emitter};
@@ -38,7 +39,7 @@ impl Builder<'_, '_> {
         BuiltLights { lights, tables, infinite, sampler }
     }
 
-    /// One light for each primitive of an emitting shape.
+    /// One light for each primitive of an emitting shape, or one for two triangles that are a parallelogram.
     fn add_area_lights(
         &mut self,
         emitter: Emitter,
@@ -56,7 +57,13 @@ impl Builder<'_, '_> {
         let Some(emission) = tables.build_emission(entity, &mut self.context, area as f32, alpha) else {
             return;
         };
-        attributes.first_light = Some(LightId(lights.len() as u32));
+        let next = LightId(lights.len() as u32);
+        if let Some(light) = AreaLight::joined(geometry, id, emission, tables) {
+            attributes.lights = Some(ShapeLights::whole(next));
+            lights.push(Light::Area(light));
+            return;
+        }
+        attributes.lights = Some(ShapeLights::each(next));
         let primitives =
             primitives.map(|primitive| AreaLight::new(geometry, id, primitive, emission, tables));
         lights.extend(primitives.map(Light::Area));

@@ -130,7 +130,7 @@ impl Builder<'_, '_> {
                 }
             };
             debug_assert_eq!(id.0 as usize, self.attributes.len());
-            self.attributes.push(ShapeAttributes { material, alpha, first_light: None });
+            self.attributes.push(ShapeAttributes { material, alpha, lights: None });
             if let Some(area_light) = emits {
                 self.emitters.push(Emitter { geometry: id, area_light });
             }

@@ -11,7 +11,7 @@
 
 use std::f32::consts::PI;
 
-use etendue_geometry::{Geometry, GeometryId, Lamp, Reference, ShapeSample};
+use etendue_geometry::{FlatLamp, Geometry, GeometryId, Lamp, Reference, ShapeSample};
 use etendue_math::{Frame, Normal3, Point2, Point3, Ray, Vector3, warp};
 use etendue_spectrum::{Sampled, Spectrum, SpectrumTables, Wavelengths};
 
@@ -179,7 +179,7 @@ impl AreaEmission {
 pub struct AreaLight {
     /// The shape.
     pub geometry: GeometryId,
-    /// Triangle or patch of the shape; 0 for quadrics.
+    /// Triangle or patch of the shape; 0 for quadrics and for two triangles that are one lamp.
     pub primitive: u32,
     /// What it emits.
     pub emission: AreaEmissionId,
@@ -201,6 +201,36 @@ impl AreaLight {
         let emitted = &tables.emissions[emission.0 as usize];
         let lamp = geometry.lamp(id, primitive).filter(|lamp| !emitted.varies() || lamp.has_places());
         Self { geometry: id, primitive, emission, is_visible: emitted.is_visible, lamp }
+    }
+
+    /// The whole of a shape as one light, if it is a parallelogram of two triangles that emits the same everywhere.
+    #[must_use]
+    pub fn joined(
+        geometry: &Geometry,
+        id: GeometryId,
+        emission: AreaEmissionId,
+        tables: &LightTables,
+    ) -> Option<Self> {
+        let lamp = geometry.joined_lamp(id)?;
+        let emitted = &tables.emissions[emission.0 as usize];
+        let is_visible = emitted.is_visible;
+        (!emitted.varies()).then_some(Self {
+            geometry: id,
+            primitive: 0,
+            emission,
+            is_visible,
+            lamp: Some(lamp),
+        })
+    }
+
+    /// The lamp, if it is flat, which may be more than the primitive.
+    fn flat_lamp(&self) -> Option<&FlatLamp> {
+        self.lamp.as_ref().and_then(Lamp::flat)
+    }
+
+    fn area(&self, context: &LightContext) -> f32 {
+        let of_primitive = || context.geometry.area(self.geometry, self.primitive);
+        self.flat_lamp().map_or_else(of_primitive, FlatLamp::area)
     }
 
     /// A point as seen from `reference`, with its density per steradian; with texture coordinates if `varies`.
@@ -274,7 +304,13 @@ impl AreaLight {
         if !self.is_visible {
             return 0.0;
         }
-        context.geometry.pdf_from(self.geometry, self.primitive, reference, wi)
+        match self.flat_lamp() {
+            Some(lamp) => {
+                let hit = lamp.intersect(&Ray::new(reference.p, wi));
+                hit.map_or(0.0, |p| lamp.pdf_from(reference, p))
+            }
+            None => context.geometry.pdf_from(self.geometry, self.primitive, reference, wi),
+        }
     }
 
     #[inline]
@@ -301,8 +337,11 @@ impl AreaLight {
         mut u_direction: Point2,
         lambda: &Wavelengths,
     ) -> Option<EmittedRay> {
-        let s = context.geometry.sample_area(self.geometry, self.primitive, u_position)?;
         let emission = self.emission(context);
+        let s = match self.flat_lamp() {
+            Some(lamp) if !emission.varies() => lamp.sample_area(u_position),
+            _ => context.geometry.sample_area(self.geometry, self.primitive, u_position)?,
+        };
         let mut side = 1.0;
         if emission.two_sided {
             side = if u_direction.x < 0.5 { 1.0 } else { -1.0 };
@@ -329,21 +368,22 @@ impl AreaLight {
         let emission = self.emission(context);
         let cosine = ng.dot_vector(ray.direction);
         let cosine = if emission.two_sided { cosine.abs() } else { cosine.max(0.0) };
-        let area = context.geometry.area(self.geometry, self.primitive);
+        let area = self.area(context);
         (1.0 / area, warp::cosine_hemisphere_pdf(cosine) / emission.sides())
     }
 
     pub(super) fn power(&self, context: &LightContext) -> LightPower {
-        let area = context.geometry.area(self.geometry, self.primitive);
+        let area = self.area(context);
         self.emission(context).exitance() * f64::from(area)
     }
 
     pub(super) fn bounds(&self, context: &LightContext) -> Option<LightBounds> {
         let emission = self.emission(context);
+        let of_primitive = || context.geometry.primitive_bounds(self.geometry, self.primitive);
         let (w, cos_theta_o) = context.geometry.emission_cone(self.geometry, self.primitive);
-        let area = context.geometry.area(self.geometry, self.primitive);
+        let area = self.area(context);
         Some(LightBounds {
-            bounds: context.geometry.primitive_bounds(self.geometry, self.primitive),
+            bounds: self.flat_lamp().map_or_else(of_primitive, FlatLamp::bounds),
             w,
             cos_theta_o,
             cos_theta_e: 0.0,

@@ -66,6 +66,8 @@ enum Place {
 pub struct LightTree {
     /// The root first; none if no light has a place.
     nodes: Vec<Node>,
+    /// The only light that has a place: there is nothing to choose.
+    only: Option<LightId>,
     infinite: Vec<LightId>,
     places: Vec<Place>,
 }
@@ -90,11 +92,12 @@ impl LightTree {
                 None => {}
             }
         }
+        let only = if let [(id, _)] = finite.as_slice() { Some(*id) } else { None };
         let mut builder = Builder { nodes: Vec::with_capacity(finite.len().div_ceil(2)), places };
         if !finite.is_empty() {
             builder.build(&mut finite, 0, 0);
         }
-        Self { nodes: builder.nodes, infinite, places: builder.places }
+        Self { nodes: builder.nodes, only, infinite, places: builder.places }
     }
 
     /// Groups of lights that are sampled apart: the tree, and each light at infinity.
@@ -111,11 +114,16 @@ impl LightTree {
     }
 
     /// A light of a group for the point `reference`, with its probability within the group.
+    #[inline]
     #[must_use]
-    pub fn sample(&self, group: usize, reference: &Reference, mut u: f32) -> Option<(LightId, f32)> {
+    pub fn sample(&self, group: usize, reference: &Reference, u: f32) -> Option<(LightId, f32)> {
         if let Some(id) = self.infinite.get(group) {
             return Some((*id, 1.0));
         }
+        self.only.map_or_else(|| self.descend(reference, u), |id| Some((id, 1.0)))
+    }
+
+    fn descend(&self, reference: &Reference, mut u: f32) -> Option<(LightId, f32)> {
         let mut pmf = 1.0;
         let mut node = self.nodes.first()?;
         loop {
@@ -135,13 +143,18 @@ impl LightTree {
     }
 
     /// Probability with which [`sample`](Self::sample) takes `light` of its group.
+    #[inline]
     #[must_use]
     pub fn pmf(&self, reference: &Reference, light: LightId) -> f32 {
-        let mut trail = match self.places[light.0 as usize] {
-            Place::Dark => return 0.0,
-            Place::Infinite => return 1.0,
-            Place::Trail(trail) => trail,
-        };
+        match self.places[light.0 as usize] {
+            Place::Dark => 0.0,
+            Place::Infinite => 1.0,
+            Place::Trail(_) if self.only.is_some() => 1.0,
+            Place::Trail(trail) => self.pmf_along(trail, reference),
+        }
+    }
+
+    fn pmf_along(&self, mut trail: u64, reference: &Reference) -> f32 {
         let mut pmf = 1.0;
         let mut node = &self.nodes[0];
         loop {

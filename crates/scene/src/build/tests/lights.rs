@@ -7,6 +7,7 @@ use etendue_spectrum::{Sampled, Wavelengths};
 
 use super::*;
 use crate::light::{Light, LightId, LightSampler};
+use crate::scene::ShapeLights;
 
 /// These shapes, all with the area light of the given entity.
 fn emitting(mut shapes: Vec<ShapeEntity>, area_light: Entity) -> Document {
@@ -24,25 +25,32 @@ fn lamp() -> Entity {
 #[test]
 fn each_primitive_is_a_light() {
     let at = |x: f32| still(Transform::translate(Vector3::new(x, 0.0, 0.0)));
+    let kite = Entity::new("trianglemesh")
+        .with("P", points(&[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [2.0, 2.0, 0.0], [-1.0, 1.0, 0.0]]))
+        .with("indices", integers(&[0, 1, 2, 0, 2, 3]));
     let shapes = vec![
         shape(square()),
         ShapeEntity { world_from_object: at(5.0), ..sphere() },
-        ShapeEntity { world_from_object: at(10.0), ..shape(square()) },
+        ShapeEntity { world_from_object: at(10.0), ..shape(kite) },
     ];
     let mut document = emitting(shapes, lamp());
     document.lights = lit().lights;
     let scene = scene(&document);
-    assert_eq!(scene.lights.len(), 1 + 2 + 1 + 2);
+    // The two triangles of a square are one light.
+    assert_eq!(scene.lights.len(), 1 + 1 + 1 + 2);
     assert!(scene.infinite_lights.is_empty());
-    let firsts = scene.attributes.iter().map(|a| a.first_light).collect::<Vec<_>>();
-    assert_eq!(firsts, [1, 3, 4].map(|id| Some(LightId(id))));
-    for (x, y, light) in [(0.5, -0.5, 1), (-0.5, 0.5, 2), (5.0, 0.0, 3), (10.5, -0.5, 4), (9.5, 0.5, 5)] {
+    let lights = scene.attributes.iter().map(|a| a.lights).collect::<Vec<_>>();
+    let expected =
+        [ShapeLights::whole(LightId(1)), ShapeLights::each(LightId(2)), ShapeLights::each(LightId(3))];
+    assert_eq!(lights, expected.map(Some));
+    for (x, y, light) in [(0.5, -0.5, 1), (-0.5, 0.5, 1), (5.0, 0.0, 2), (10.5, -0.5, 3), (9.5, 0.5, 4)] {
         let ray = down(x, y);
         let hit = scene.intersect(&ray, f32::INFINITY).expect("something is below");
         let surface = scene.surface(&ray, &hit);
         assert_eq!(surface.light, Some(LightId(light)));
         let Light::Area(area) = scene.light(LightId(light)) else { panic!("no area light") };
-        assert_eq!((area.geometry, area.primitive), (hit.geometry, hit.primitive));
+        let primitive = if light == 1 { 0 } else { hit.primitive };
+        assert_eq!((area.geometry, area.primitive), (hit.geometry, primitive));
         assert!(!scene.emitted(&surface, &Wavelengths::sample_visible(0.5)).is_black());
     }
 }
@@ -70,7 +78,7 @@ fn some_shapes_cannot_be_lights() {
     ] {
         let scene = warning_here(&document, message);
         assert_eq!(scene.lights.len(), 1);
-        assert!(scene.attributes[0].first_light.is_none() && below(&scene, 0.5, 0.0).is_some());
+        assert!(scene.attributes[0].lights.is_none() && below(&scene, 0.5, 0.0).is_some());
     }
 }
 
