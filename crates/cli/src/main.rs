@@ -5,6 +5,7 @@
 
 mod args;
 mod bench;
+mod brdf;
 mod compare;
 mod failure;
 mod info;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Merge(arguments) => merge::run(&arguments),
         Command::Tonemap(arguments) => tonemap::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
+        Command::Brdf(arguments) => brdf::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
     };
     match result {

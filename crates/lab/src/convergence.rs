@@ -339,6 +339,7 @@ impl ConvergencePanel {
             y_range: None,
             legend: Corner::LowerLeft,
             series,
+            ..Panel::default()
         }
     }
 

@@ -6,6 +6,7 @@
 pub mod estimator;
 pub mod scenes;
 
+pub mod brdf;
 pub mod convergence;
 pub mod pixel;
 pub mod speed;
@@ -13,6 +14,7 @@ pub mod speed;
 pub mod fit;
 pub mod plot;
 
+pub use brdf::{Exploration, Subject, explore, law_table};
 pub use convergence::{Convergence, ConvergenceSettings, convergence};
 pub use estimator::{Estimator, SamplerChoice};
 pub use pixel::{PixelSettings, PixelStudy, pixel};

@@ -199,6 +199,7 @@ impl PixelStudy {
                 series("1 ± σ/√N", law(1.0), Mark::Dashes),
                 series("", law(-1.0), Mark::Dashes),
             ],
+            ..Panel::default()
         };
         draw(&[panel])
     }

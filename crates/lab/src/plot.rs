@@ -1,11 +1,24 @@
-//! Log-log plots as SVG.
+//! Plots with logarithmic or linear axes, and polar ones, as SVG or as pixels.
+
+mod base64;
+mod polar;
+mod raster;
 
 use std::cell::RefCell;
 
 use plotters::coord::Shift;
 use plotters::coord::combinators::IntoLogRange;
+use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 use plotters::style::FontDesc;
+
+use etendue_image::Image;
+use etendue_io::images::png_bytes;
+use raster::Raster;
+
+use base64::base64;
+
+pub use polar::Polar;
 
 /// Pixels across and down of a panel.
 const PANEL_SIZE: (u32, u32) = (640, 520);
@@ -19,6 +32,15 @@ const COLORS: [RGBColor; 6] = [
     RGBColor(204, 121, 167),
     RGBColor(86, 180, 233),
 ];
+/// Blue, green, orange and red of the same set.
+const WAVELENGTH_COLORS: [RGBColor; 6] = [
+    RGBColor(0, 114, 178),
+    RGBColor(0, 158, 115),
+    RGBColor(230, 159, 0),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 0, 0),
+    RGBColor(120, 120, 120),
+];
 const GUIDE_COLOR: RGBColor = RGBColor(120, 120, 120);
 
 /// How a series is drawn.
@@ -30,9 +52,31 @@ pub enum Mark {
     LineAndDots,
     /// A dashed grey line: theory.
     Dashes,
+    /// A dashed line in the colour of the series before.
+    DashesAsBefore,
 }
 
-/// Points of positive coordinates; others are not drawn.
+/// How numbers become places along both axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Axes {
+    /// Logarithms; points that are not positive are not drawn.
+    #[default]
+    Logarithmic,
+    /// Proportional, within a horizontal range; the vertical one begins at 0.
+    Linear([f64; 2]),
+}
+
+/// Colours of the series, in turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Palette {
+    /// Far apart from each other.
+    #[default]
+    Apart,
+    /// Those of four wavelengths, short to long, then black and grey.
+    Wavelengths,
+}
+
+/// Points of a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     /// Name in the legend; empty for none.
@@ -44,16 +88,19 @@ pub struct Series {
 }
 
 /// A corner of a plot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Corner {
     /// For curves that fall; the axis goes on below them to make room.
+    #[default]
     LowerLeft,
+    /// For curves that rise.
+    UpperLeft,
     /// For curves that stay in the middle.
     UpperRight,
 }
 
-/// One plot with logarithmic axes.
-#[derive(Clone, Debug, PartialEq)]
+/// One plot.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Panel {
     /// Above the plot.
     pub title: String,
@@ -63,26 +110,122 @@ pub struct Panel {
     pub y_label: String,
     /// Range of the vertical axis; `None` for that of the points. What lies outside is not drawn.
     pub y_range: Option<[f64; 2]>,
+    /// Scales.
+    pub axes: Axes,
+    /// Colours.
+    pub palette: Palette,
     /// Where the names of the series stand.
     pub legend: Corner,
     /// What it shows.
     pub series: Vec<Series>,
 }
 
+/// A part of a figure.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Part {
+    /// Curves over an axis.
+    Panel(Panel),
+    /// Curves around a point.
+    Polar(Polar),
+    /// A picture in [0, 1], with its title.
+    Picture(String, Image),
+}
+
+impl Part {
+    fn height(&self) -> u32 {
+        match self {
+            Self::Polar(polar) if !polar.has_lower_half => PANEL_SIZE.1 * 3 / 4,
+            _ => PANEL_SIZE.1,
+        }
+    }
+}
+
 /// An SVG document with the panels side by side.
 #[must_use]
 pub fn draw(panels: &[Panel]) -> String {
+    let parts: Vec<Part> = panels.iter().cloned().map(Part::Panel).collect();
+    draw_rows(&parts, parts.len())
+}
+
+/// An SVG document with the parts in rows of `n_columns`.
+#[must_use]
+pub fn draw_rows(parts: &[Part], n_columns: usize) -> String {
+    let layout = Layout::of(parts, n_columns);
     let mut text = String::new();
-    let width = PANEL_SIZE.0 * panels.len().max(1) as u32;
-    {
-        let root = SVGBackend::with_string(&mut text, (width, PANEL_SIZE.1)).into_drawing_area();
+    layout.draw(parts, &SVGBackend::with_string(&mut text, layout.size).into_drawing_area());
+    for (part, corner) in parts.iter().zip(&layout.corners) {
+        if let Part::Picture(_, picture) = part
+            && let (Some(png), Some(end)) = (png_bytes(picture), text.rfind("</svg>"))
+        {
+            let [x, y] = picture_corner(*corner, picture);
+            let (w, h, data) = (picture.width, picture.height, base64(&png));
+            let href = format!("data:image/png;base64,{data}");
+            text.insert_str(
+                end,
+                &format!("<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" href=\"{href}\"/>\n"),
+            );
+        }
+    }
+    text
+}
+
+/// The same as a picture in linear light.
+#[must_use]
+pub fn rasterize_rows(parts: &[Part], n_columns: usize) -> Image {
+    let layout = Layout::of(parts, n_columns);
+    let (width, height) = layout.size;
+    let mut pixels = vec![[1.0; 3]; width as usize * height as usize];
+    layout.draw(parts, &Raster::new(&mut pixels, width as usize).into_drawing_area());
+    let mut image = raster::image(pixels, width as usize);
+    for (part, corner) in parts.iter().zip(&layout.corners) {
+        if let Part::Picture(_, picture) = part {
+            raster::paste(&mut image, picture, picture_corner(*corner, picture));
+        }
+    }
+    image
+}
+
+/// Where a picture lies in a part: below the title, in the middle.
+fn picture_corner([x, y]: [u32; 2], picture: &Image) -> [u32; 2] {
+    let gap = |room: u32, size: usize| room.saturating_sub(size as u32) / 2;
+    [x + gap(PANEL_SIZE.0, picture.width), y + gap(PANEL_SIZE.1, picture.height)]
+}
+
+/// Where the parts of a figure lie.
+struct Layout {
+    n_columns: usize,
+    /// Upper left corner of each part in pixels.
+    corners: Vec<[u32; 2]>,
+    heights: Vec<u32>,
+    size: (u32, u32),
+}
+
+impl Layout {
+    fn of(parts: &[Part], n_columns: usize) -> Self {
+        let n_columns = n_columns.max(1);
+        let heights: Vec<u32> =
+            parts.chunks(n_columns).map(|row| row.iter().map(Part::height).max().unwrap_or(0)).collect();
+        let top = |row: usize| heights[..row].iter().sum::<u32>();
+        let corner = |i: usize| [PANEL_SIZE.0 * (i % n_columns) as u32, top(i / n_columns)];
+        let size = (PANEL_SIZE.0 * n_columns as u32, heights.iter().sum::<u32>().max(1));
+        Self { n_columns, corners: (0..parts.len()).map(corner).collect(), heights, size }
+    }
+
+    fn draw<B: DrawingBackend>(&self, parts: &[Part], root: &Area<B>) {
         root.fill(&WHITE).expect(IN_MEMORY);
-        for (area, panel) in root.split_evenly((1, panels.len().max(1))).iter().zip(panels) {
-            panel.draw(area);
+        for (i, part) in parts.iter().enumerate() {
+            let (corner, size) = (self.corners[i], (PANEL_SIZE.0, self.heights[i / self.n_columns]));
+            let area = root.clone().shrink((corner[0], corner[1]), size);
+            match part {
+                Part::Panel(panel) => panel.draw(&area),
+                Part::Polar(polar) => polar.draw(&area),
+                Part::Picture(title, _) => {
+                    area.draw(&Text::new(title.as_str(), (16, 12), font(18))).expect(IN_MEMORY);
+                }
+            }
         }
         root.present().expect(IN_MEMORY);
     }
-    text
 }
 
 /// Grid lines of an axis: enough for nine in each of three decades.
@@ -93,18 +236,38 @@ const LEGEND_SHARE: f64 = 0.3;
 /// Why drawing does not fail.
 const IN_MEMORY: &str = "a string takes any drawing";
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Area<B> = DrawingArea<B, Shift>;
 
 impl Panel {
-    fn draw(&self, area: &Area<'_>) {
-        let [x, y] = [self.range(0), self.y_range.unwrap_or_else(|| self.y_range_with_legend())];
-        let mut chart = ChartBuilder::on(area)
-            .caption(&self.title, font(20))
-            .margin(12)
-            .x_label_area_size(48)
-            .y_label_area_size(72)
-            .build_cartesian_2d((x[0]..x[1]).log_scale(), (y[0]..y[1]).log_scale())
-            .expect(IN_MEMORY);
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) {
+        let mut builder = ChartBuilder::on(area);
+        builder.caption(&self.title, font(20)).margin(12).x_label_area_size(48).y_label_area_size(72);
+        match self.axes {
+            Axes::Logarithmic => {
+                let [x, y] = [self.range(0), self.y_range.unwrap_or_else(|| self.y_range_with_legend())];
+                let x_axis = (x[0]..x[1]).log_scale();
+                let chart = builder.build_cartesian_2d(x_axis, (y[0]..y[1]).log_scale());
+                self.fill(chart.expect(IN_MEMORY), y, label);
+            }
+            Axes::Linear(x) => {
+                let y = self.y_range.unwrap_or_else(|| [0.0, self.range(1)[1]]);
+                let chart = builder.build_cartesian_2d(x[0]..x[1], y[0]..y[1]);
+                self.fill(chart.expect(IN_MEMORY), y, decimal);
+            }
+        }
+    }
+
+    fn fill<'b, B, X, Y>(
+        &self,
+        mut chart: ChartContext<'b, B, Cartesian2d<X, Y>>,
+        y: [f64; 2],
+        label: fn(f64) -> String,
+    ) where
+        B: DrawingBackend + 'b,
+        X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+        Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    {
+        let is_linear = self.axes != Axes::Logarithmic;
         chart
             .configure_mesh()
             .x_desc(&self.x_label)
@@ -113,34 +276,37 @@ impl Panel {
             .label_style(font(14))
             .bold_line_style(BLACK.mix(0.12))
             .max_light_lines(0)
-            .x_labels(MAX_LINES)
-            .y_labels(MAX_LINES)
+            .x_labels(if is_linear { 10 } else { MAX_LINES })
+            .y_labels(if is_linear { 10 } else { MAX_LINES })
             .x_label_formatter(&once(label))
             .y_label_formatter(&once(label))
             .draw()
             .expect(IN_MEMORY);
-        for (index, series) in self.series.iter().enumerate() {
-            let color = if series.mark == Mark::Dashes { GUIDE_COLOR } else { COLORS[index % COLORS.len()] };
-            let style = color.stroke_width(if series.mark == Mark::Dashes { 1 } else { 2 });
-            let points: Vec<(f64, f64)> = series
-                .points
-                .iter()
-                .filter(|point| point[0] > 0.0 && point[1] >= y[0] && point[1] <= y[1])
-                .map(|point| (point[0], point[1]))
-                .collect();
+        let colors = if self.palette == Palette::Apart { COLORS } else { WAVELENGTH_COLORS };
+        let mut n_colored = 0;
+        for series in &self.series {
+            n_colored += usize::from(series.mark != Mark::DashesAsBefore);
+            let is_guide = series.mark == Mark::Dashes;
+            let color = if is_guide { GUIDE_COLOR } else { colors[(n_colored.max(1) - 1) % colors.len()] };
+            let style = color.stroke_width(if is_guide { 1 } else { 2 });
+            let is_drawn = |p: &&[f64; 2]| (is_linear || p[0] > 0.0) && p[1] >= y[0] && p[1] <= y[1];
+            let points: Vec<(f64, f64)> =
+                series.points.iter().filter(is_drawn).map(|p| (p[0], p[1])).collect();
             if series.mark == Mark::LineAndDots {
                 let dots = points.iter().map(|p| Circle::new(*p, 3, color.filled()));
                 chart.draw_series(dots).expect(IN_MEMORY);
             }
-            let drawn = if series.mark == Mark::Dashes {
+            let drawn = if is_guide || series.mark == Mark::DashesAsBefore {
                 chart.draw_series(DashedLineSeries::new(points, 6, 4, style)).expect(IN_MEMORY)
             } else {
                 chart.draw_series(LineSeries::new(points, style)).expect(IN_MEMORY)
             };
             if !series.name.is_empty() {
+                // A dashed line shows one dash.
+                let end = if series.mark == Mark::DashesAsBefore { 8 } else { 22 };
                 drawn
                     .label(&series.name)
-                    .legend(move |(x, y)| PathElement::new([(x, y), (x + 22, y)], style));
+                    .legend(move |(x, y)| PathElement::new([(x, y), (x + end, y)], style));
             }
         }
         chart
@@ -158,7 +324,7 @@ impl Panel {
         let [low, high] = self.range(1);
         match self.legend {
             Corner::LowerLeft => [low * (low / high).powf(LEGEND_SHARE), high],
-            Corner::UpperRight => [low, high],
+            Corner::UpperLeft | Corner::UpperRight => [low, high],
         }
     }
 
@@ -175,6 +341,7 @@ impl Corner {
     const fn position(self) -> SeriesLabelPosition {
         match self {
             Self::LowerLeft => SeriesLabelPosition::LowerLeft,
+            Self::UpperLeft => SeriesLabelPosition::UpperLeft,
             Self::UpperRight => SeriesLabelPosition::UpperRight,
         }
     }
@@ -204,6 +371,9 @@ fn label(value: f64) -> String {
 
 /// A number without exponent or trailing zeros.
 fn decimal(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
     let digits = (1.0 - value.abs().log10().floor()).max(0.0) as usize;
     let text = format!("{value:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }

@@ -3,6 +3,7 @@
 mod arguments;
 mod bad_files;
 mod bad_scenes;
+mod brdf;
 mod checkpoint;
 mod degenerate;
 mod listing;

@@ -31,7 +31,7 @@ use image::ImageFormat;
 
 pub use atomic::{check_writable, write_atomically};
 pub use error::{ImageError, ImageErrorCause};
-pub use write::{write_image, write_png, write_ppm, write_ppm_ascii};
+pub use write::{png_bytes, write_image, write_png, write_ppm, write_ppm_ascii};
 
 /// Most pixels of a picture that is read.
 const MAX_PIXELS: u64 = 1 << 31;

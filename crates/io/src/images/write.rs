@@ -47,6 +47,14 @@ pub fn write_png(
     with_path(path, || write_whole(path, image, |out| encode_png(out, image, quantization)))
 }
 
+/// An 8-bit PNG in memory, to put into another file. `None` for a picture without pixels or colour.
+#[must_use]
+pub fn png_bytes(image: &Image) -> Option<Vec<u8>> {
+    let mut bytes = Vec::new();
+    encode_png(&mut bytes, image, Quantization::default()).ok()?;
+    Some(bytes)
+}
+
 /// Writes binary PPM (P6) with a chosen encoding and dithering.
 ///
 /// # Errors

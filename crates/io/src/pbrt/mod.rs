@@ -26,7 +26,7 @@ use etendue_scene::{Diagnostics, Document};
 use builder::Builder;
 use files::Files;
 
-pub use write::write_pbrt;
+pub use write::{value_text, write_pbrt};
 
 /// Reads a scene file, which may be compressed by gzip, with all files that it includes.
 ///

@@ -345,6 +345,12 @@ impl Writer<'_> {
     }
 }
 
+/// The values as a scene file has them, without brackets.
+#[must_use]
+pub fn value_text(value: &Value) -> String {
+    values(value).collect::<Vec<_>>().join(" ")
+}
+
 /// The values as words.
 fn values(value: &Value) -> Box<dyn Iterator<Item = String> + '_> {
     match value {
