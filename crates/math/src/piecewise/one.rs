@@ -69,19 +69,19 @@ impl PiecewiseConstant1 {
     #[inline]
     #[must_use]
     pub fn sample(&self, u: f32) -> (f32, f32, usize) {
-        let (place, offset) = self.sample_unit(u);
+        let (offset, within) = self.sample_cell(u);
+        let place = ((offset as f32 + within) / self.func.len() as f32).min(ONE_MINUS_EPSILON);
         let x = self.min + place * (self.max - self.min);
         (x.min(self.max), self.pdf_of_cell(offset), offset)
     }
 
-    /// Place in [0, 1) within the interval, and the cell.
+    /// A cell, and the place in it, in [0, 1).
     #[inline]
-    pub(super) fn sample_unit(&self, u: f32) -> (f32, usize) {
+    pub(super) fn sample_cell(&self, u: f32) -> (usize, f32) {
         let offset = self.cell_of_share(u);
         let (low, high) = (self.cdf[offset], self.cdf[offset + 1]);
         let within = if high > low { (u - low) / (high - low) } else { 0.0 };
-        let place = (offset as f32 + within.min(ONE_MINUS_EPSILON)) / self.func.len() as f32;
-        (place.min(ONE_MINUS_EPSILON), offset)
+        (offset, within.min(ONE_MINUS_EPSILON))
     }
 
     /// The last cell that begins at or below `u`: of positive share, since equal borders are skipped.
@@ -100,13 +100,13 @@ impl PiecewiseConstant1 {
     }
 
     #[inline]
-    pub(super) fn pdf_of_cell(&self, offset: usize) -> f32 {
+    fn pdf_of_cell(&self, offset: usize) -> f32 {
         if self.integral > 0.0 { self.func[offset] / self.integral } else { 0.0 }
     }
 
     /// Index of the cell that holds `x`; `None` outside the interval.
     #[inline]
-    pub(super) fn cell(&self, x: f32) -> Option<usize> {
+    fn cell(&self, x: f32) -> Option<usize> {
         if !(x >= self.min && x <= self.max) {
             return None;
         }

@@ -2,8 +2,8 @@
 //!
 //! A texel is white light times a smooth spectrum of at most 1 (Jakob and Hanika 2019, "A Low-Dimensional Function
 //! Space for Efficient Spectral Upsampling"), times a factor that carries brightness, as pbrt-v4's
-//! `RGBIlluminantSpectrum`. Stored are the factor and the three coefficients, 16 bytes, and the colour for paths that
-//! carry bands, 6 bytes.
+//! `RGBIlluminantSpectrum`. Stored are the factor and the three coefficients, 16 bytes, and apart from them, so that a
+//! path touches one place in memory, the factor and the colour for paths that carry bands, 12 bytes.
 
 use etendue_math::Point2;
 use etendue_spectrum::{
@@ -23,9 +23,15 @@ struct Texel {
     polynomial: SigmoidPolynomial,
 }
 
-/// A texel over its factor by band, in 32768ths: below 2, since the largest component of the colour is 1/2 and
-/// conversion to the primaries of sRGB makes it less than four times as large.
-type PackedBands = [u16; 3];
+/// One texel for paths that carry bands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct BandTexel {
+    scale: f32,
+    /// The texel over its factor by band, in 32768ths: below 2, since the largest component of the colour is 1/2 and
+    /// conversion to the primaries of sRGB makes it less than four times as large.
+    bands: [u16; 3],
+}
+
 const PACKED_ONE: f32 = 32_768.0;
 
 /// A picture whose texels are spectra of light, rows from the top.
@@ -34,7 +40,7 @@ pub struct LightImage {
     width: usize,
     height: usize,
     texels: Vec<Texel>,
-    bands: Vec<PackedBands>,
+    bands: Vec<BandTexel>,
     white: TableId,
     /// Spectrum of the average texel.
     mean: Spectrum,
@@ -108,14 +114,16 @@ impl LightImage {
             + (at(x0, y0 + 1.0) * (1.0 - dx) + at(x0 + 1.0, y0 + 1.0) * dx) * dy
     }
 
+    #[inline]
     fn texel(&self, x: usize, y: usize, tables: &SpectrumTables, lambda: &Wavelengths) -> Sampled {
         let index = y * self.width + x;
+        if lambda.is_bands() {
+            let texel = &self.bands[index];
+            return lambda.of_bands(unpack(texel.bands)) * texel.scale;
+        }
         let texel = &self.texels[index];
         if texel.scale == 0.0 {
             return Sampled::ZERO;
-        }
-        if lambda.is_bands() {
-            return lambda.of_bands(unpack(self.bands[index])) * texel.scale;
         }
         texel.polynomial.sample(lambda) * tables.sample(self.white, lambda) * texel.scale
     }
@@ -128,17 +136,18 @@ fn lift(rgb: [f32; 3], space: &ColorSpace) -> Texel {
 }
 
 /// A colour over the factor of its texel by band.
-fn pack(rgb: [f32; 3], scale: f32, space: &ColorSpace) -> PackedBands {
+fn pack(rgb: [f32; 3], scale: f32, space: &ColorSpace) -> BandTexel {
     if scale == 0.0 {
-        return [0; 3];
+        return BandTexel { scale, bands: [0; 3] };
     }
     let bands = space.light_bands(rgb.map(|c| c.max(0.0) / scale));
-    bands.rgb().map(|c| (c * PACKED_ONE).round().min(f32::from(u16::MAX)) as u16)
+    let bands = bands.rgb().map(|c| (c * PACKED_ONE).round().min(f32::from(u16::MAX)) as u16);
+    BandTexel { scale, bands }
 }
 
 /// Reverses [`pack`].
 #[inline]
-fn unpack(packed: PackedBands) -> Bands {
+fn unpack(packed: [u16; 3]) -> Bands {
     Bands::from_rgb(packed.map(|c| f32::from(c) / PACKED_ONE))
 }
 
