@@ -298,7 +298,7 @@ impl Entity {
     pub(crate) fn memory_bytes(&self) -> usize {
         match self {
             Self::Triangles(triangles) => triangles.mesh().memory_bytes(),
-            Self::Patches(patches) => patches.mesh().memory_bytes(),
+            Self::Patches(patches) => patches.memory_bytes(),
             Self::Sphere(_) => 0,
             Self::Quadric(_) => size_of::<Quadric>(),
         }

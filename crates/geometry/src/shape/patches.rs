@@ -17,7 +17,7 @@ use super::{Candidate, Candidates, LocalSurface, weingarten};
 use crate::bvh::{PrimitiveRef, intersect_triangle};
 use crate::double;
 use crate::hit::{ShapeSample, SurfaceDerivatives, SurfacePoint};
-use crate::mesh::BilinearMesh;
+use crate::mesh::{BilinearMesh, heap};
 
 /// A mesh of patches in the space of its group.
 #[derive(Clone, Debug)]
@@ -25,8 +25,9 @@ pub(crate) struct Patches {
     mesh: BilinearMesh,
     /// True if normals without vertex normals point against dp/du x dp/dv.
     flips: bool,
-    /// True if all patches are parallelograms. Neighbours are then found by the same test, without gaps.
-    is_flat: bool,
+    /// If all patches are parallelograms, their normals as the winding has them. Neighbours are then found by the same
+    /// test, without gaps.
+    planes: Option<Vec<Normal3>>,
     /// Largest magnitude of a coordinate.
     size: f64,
 }
@@ -105,16 +106,24 @@ impl Patches {
             }
         }
         let flips = reverse_orientation ^ group_from_shape.swaps_handedness();
-        let mut patches = Self { mesh, flips, is_flat: false, size: 0.0 };
-        patches.size = double::largest_coordinate(patches.mesh.positions.iter().copied().map(double::point));
-        patches.is_flat = (0..patches.mesh.indices.len() as u32)
-            .all(|patch| flat::is_parallelogram(&patches.corners(patch), patches.size));
+        let size = double::largest_coordinate(mesh.positions.iter().copied().map(double::point));
+        let mut patches = Self { mesh, flips, planes: None, size };
+        let corners = || (0..patches.mesh.indices.len() as u32).map(|patch| patches.corners(patch));
+        if corners().all(|corners| flat::is_parallelogram(&corners, size)) {
+            patches.planes =
+                Some(corners().map(|corners| double::to_normal(flat::normal(&corners))).collect());
+        }
         patches
     }
 
     /// True if the hierarchy holds the halves of patches, as triangles.
     pub(crate) const fn is_flat(&self) -> bool {
-        self.is_flat
+        self.planes.is_some()
+    }
+
+    /// Bytes on the heap.
+    pub(crate) fn memory_bytes(&self) -> usize {
+        self.mesh.memory_bytes() + self.planes.as_ref().map_or(0, heap)
     }
 
     /// Corners of a half, of which each patch has two.
@@ -126,12 +135,17 @@ impl Patches {
         &self.mesh
     }
 
+    #[inline(always)]
     pub(crate) fn positions(&self, patch: u32) -> [Point3; 4] {
-        self.mesh.indices[patch as usize].map(|vertex| self.mesh.positions[vertex as usize])
+        let [a, b, c, d] = self.mesh.indices[patch as usize];
+        let position = |vertex: u32| self.mesh.positions[vertex as usize];
+        [position(a), position(b), position(c), position(d)]
     }
 
+    #[inline(always)]
     fn corners(&self, patch: u32) -> Corners {
-        self.positions(patch).map(double::point)
+        let [a, b, c, d] = self.positions(patch);
+        [double::point(a), double::point(b), double::point(c), double::point(d)]
     }
 
     fn normals(&self, patch: u32) -> Option<Corners> {
@@ -171,7 +185,7 @@ impl Patches {
 
     /// Up to two hits in order of t, with the position on the patch.
     pub(crate) fn intersect(&self, patch: u32, ray: &Ray) -> Candidates {
-        if self.is_flat {
+        if self.is_flat() {
             let hit = (2 * patch..2 * patch + 2).find_map(|half| {
                 let (t, b) = intersect_triangle(ray, &self.half_corners(half).map(|p| [p.x, p.y, p.z]))?;
                 let [u, v] = flat::position(half % 2, b).map(f64::from);
@@ -183,14 +197,12 @@ impl Patches {
     }
 
     /// The geometric normal and the interpolated vertex normal.
+    #[inline(always)]
     fn geometric_normal(&self, patch: u32, c: &Corners, u: f64, v: f64) -> (DVec3, Option<DVec3>) {
-        // The mean over a parallelogram that is none but for rounding.
-        let n = if self.is_flat {
-            (c[3] - c[0]).cross(c[2] - c[1])
-        } else {
-            derivative_u(c, v).cross(derivative_v(c, u))
+        let n = match &self.planes {
+            Some(planes) => double::normal(planes[patch as usize]),
+            None => derivative_u(c, v).cross(derivative_v(c, u)).normalize_or_zero(),
         };
-        let n = n.normalize_or_zero();
         let n = if self.flips { -n } else { n };
         let Some(normals) = self.normals(patch) else { return (n, None) };
         let interpolated = bilinear(&normals, u, v);
@@ -198,13 +210,13 @@ impl Patches {
     }
 
     /// The point at a position on a patch with these corners.
-    #[inline]
+    #[inline(always)]
     fn place(&self, c: &Corners, u: f64, v: f64) -> DVec3 {
-        if self.is_flat { flat::point(c, u, v) } else { bilinear(c, u, v) }
+        if self.is_flat() { flat::point(c, u, v) } else { bilinear(c, u, v) }
     }
 
     /// The point at a position on the patch, before rounding too.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn point(&self, patch: u32, uv: [f32; 2]) -> (DVec3, SurfacePoint) {
         let c = self.corners(patch);
         let (u, v) = (f64::from(uv[0]), f64::from(uv[1]));

@@ -65,29 +65,37 @@ impl Triangles {
         &self.mesh
     }
 
-    #[inline]
+    #[inline(always)]
     pub(crate) fn positions(&self, triangle: u32) -> [Point3; 3] {
         let [a, b, c] = self.mesh.indices[triangle as usize];
-        [a, b, c].map(|vertex| self.mesh.positions[vertex as usize])
+        let position = |vertex: u32| self.mesh.positions[vertex as usize];
+        [position(a), position(b), position(c)]
     }
 
-    #[inline]
+    #[inline(always)]
     fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.positions(triangle).map(double::point)
+        let [a, b, c] = self.positions(triangle);
+        [double::point(a), double::point(b), double::point(c)]
     }
 
-    #[inline]
+    #[inline(always)]
     fn uvs(&self, triangle: u32) -> [Point2; 3] {
         if self.mesh.uvs.is_empty() {
             return [Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(1.0, 1.0)];
         }
-        self.mesh.indices[triangle as usize].map(|vertex| self.mesh.uvs[vertex as usize])
+        let [a, b, c] = self.mesh.indices[triangle as usize];
+        let uv = |vertex: u32| self.mesh.uvs[vertex as usize];
+        [uv(a), uv(b), uv(c)]
     }
 
-    #[inline]
+    #[inline(always)]
     fn normals(&self, triangle: u32) -> Option<[Normal3; 3]> {
-        (!self.mesh.normals.is_empty())
-            .then(|| self.mesh.indices[triangle as usize].map(|vertex| self.mesh.normals[vertex as usize]))
+        if self.mesh.normals.is_empty() {
+            return None;
+        }
+        let [a, b, c] = self.mesh.indices[triangle as usize];
+        let normal = |vertex: u32| self.mesh.normals[vertex as usize];
+        Some([normal(a), normal(b), normal(c)])
     }
 
     /// Corners of a triangle that can be hit: they are finite and not on one line.
@@ -101,7 +109,7 @@ impl Triangles {
     }
 
     /// Texture coordinates for the barycentric weights of a hit.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn uv(&self, triangle: u32, b: [f32; 2]) -> Point2 {
         let uv = self.uvs(triangle);
         let b0 = 1.0 - b[0] - b[1];
@@ -112,7 +120,7 @@ impl Triangles {
     }
 
     /// Unit normal of the winding, or against it where the mesh flips; the zero vector for no area.
-    #[inline]
+    #[inline(always)]
     fn plane_normal(&self, corners: &[DVec3; 3]) -> Normal3 {
         let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         let length = n.length();
@@ -121,7 +129,7 @@ impl Triangles {
     }
 
     /// The geometric normal and the interpolated vertex normal, the latter not normalised.
-    #[inline]
+    #[inline(always)]
     fn geometric_normal(
         &self,
         triangle: u32,
@@ -279,11 +287,12 @@ fn largest_coordinate(points: &[Point3]) -> f64 {
 }
 
 /// The point with barycentric weights b1 and b2.
-#[inline]
+#[inline(always)]
 fn interpolate(corners: &[DVec3; 3], b: [f32; 2]) -> DVec3 {
     corners[0] + (corners[1] - corners[0]) * f64::from(b[0]) + (corners[2] - corners[0]) * f64::from(b[1])
 }
 
+#[inline(always)]
 fn interpolate_normals(normals: &[Normal3; 3], b: [f32; 3]) -> Normal3 {
     normals[0] * b[0] + normals[1] * b[1] + normals[2] * b[2]
 }

@@ -35,9 +35,16 @@ impl Conductor {
     #[inline]
     #[must_use]
     pub fn eval(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> Sampled {
-        let Some(wm) = self.half_vector(wo, wi, lobes) else { return Sampled::ZERO };
-        let fresnel = fresnel_conductor(wo.dot(wm), self.eta, self.k);
-        fresnel * (0.25 * self.microfacets.d(wm) * self.microfacets.g_over_cosines(wo, wi)) // [SPEC BRDF-16]
+        self.eval_and_pdf(wo, wi, lobes).0
+    }
+
+    /// [`Self::eval`] and [`Self::pdf`] together, which have most in common.
+    #[inline]
+    #[must_use]
+    pub fn eval_and_pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> (Sampled, f32) {
+        let Some(wm) = self.half_vector(wo, wi, lobes) else { return (Sampled::ZERO, 0.0) };
+        let (reflection, pdf_w) = self.microfacets.reflection(wo, wi, wm);
+        (fresnel_conductor(wo.dot(wm), self.eta, self.k) * reflection, pdf_w) // [SPEC BRDF-16]
     }
 
     /// The mirror direction of a facet visible from `wo`.
@@ -57,7 +64,7 @@ impl Conductor {
             return None;
         }
         let cos_m = wo.dot(wm).abs();
-        let pdf_w = self.microfacets.visible_normal_pdf(wo, wm) / (4.0 * cos_m);
+        let (_, pdf_w) = self.microfacets.reflection(wo, wi, wm);
         (pdf_w > 0.0 && pdf_w.is_finite()).then(|| BsdfSample {
             wi,
             weight: fresnel_conductor(cos_m, self.eta, self.k) * self.microfacets.g_over_g1(wo, wi),
@@ -74,7 +81,7 @@ impl Conductor {
     #[must_use]
     pub fn pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> f32 {
         let Some(wm) = self.half_vector(wo, wi, lobes) else { return 0.0 };
-        self.microfacets.visible_normal_pdf(wo, wm) / (4.0 * wo.dot(wm).abs())
+        self.microfacets.reflection(wo, wi, wm).1
     }
 
     /// The facet normal that reflects `wo` to `wi`, in the upper hemisphere; `None` if nothing glossy happens.

@@ -117,6 +117,17 @@ impl Microfacets {
         cos_i * (cos_o + s_o) / (s_o * cos_i + self.s(wi) * cos_o)
     }
 
+    /// `D(wm) G(wo, wi) / (4 |cos_o| |cos_i|)`, mirror reflection but for Fresnel's factor, and the density in 1/sr of `wi` if
+    /// visible normals are sampled, where `wm` is the facet that reflects `wo` to `wi`.
+    #[inline]
+    #[must_use]
+    pub fn reflection(self, wo: Vector3, wi: Vector3, wm: Vector3) -> (f32, f32) {
+        let half_d = 0.5 * self.d(wm);
+        let (cos_o, cos_i) = (wo.z.abs(), wi.z.abs());
+        let s_o = self.s(wo);
+        (half_d / (s_o * cos_i + self.s(wi) * cos_o), half_d / (cos_o + s_o))
+    }
+
     /// Density in 1/sr of the normals visible from `wo`: `D(wm) G1(wo) |wo·wm| / |cos_o|`.
     #[inline]
     #[must_use]

@@ -133,6 +133,15 @@ impl BsdfKind {
         }
     }
 
+    /// [`Self::eval`] in radiance mode and [`Self::pdf`], of all lobes.
+    #[inline]
+    fn eval_and_pdf(&self, wo: Vector3, wi: Vector3) -> (Sampled, f32) {
+        match self {
+            Self::Conductor(bsdf) => bsdf.eval_and_pdf(wo, wi, Lobes::ALL),
+            _ => (self.eval(wo, wi, TransportMode::Radiance, Lobes::ALL), self.pdf(wo, wi, Lobes::ALL)),
+        }
+    }
+
     /// The same with rougher facets where they are nearly smooth.
     #[must_use]
     pub fn regularized(self) -> Self {
@@ -270,8 +279,8 @@ impl Bsdf {
         if local_o.z == 0.0 || local_i.z == 0.0 {
             return (Sampled::ZERO, 0.0);
         }
-        let f = self.kind.eval(local_o, local_i, TransportMode::Radiance, Lobes::ALL);
-        (f * local_i.z.abs(), self.kind.pdf(local_o, local_i, Lobes::ALL))
+        let (f, pdf_w) = self.kind.eval_and_pdf(local_o, local_i);
+        (f * local_i.z.abs(), pdf_w)
     }
 
     /// A direction among the wanted lobes, from a number that chooses the lobe and a point that chooses within it.

@@ -36,3 +36,8 @@ pub(super) fn point(c: &Corners, u: f64, v: f64) -> DVec3 {
     let [p00, p10, p01, p11] = *c;
     if u >= v { p00 + (p10 - p00) * u + (p11 - p10) * v } else { p00 + (p11 - p01) * u + (p01 - p00) * v }
 }
+
+/// The unit normal, the mean over a parallelogram that is none but for rounding; zero without area.
+pub(super) fn normal(c: &Corners) -> DVec3 {
+    (c[3] - c[0]).cross(c[2] - c[1]).normalize_or_zero()
+}
