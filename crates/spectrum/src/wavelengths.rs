@@ -71,10 +71,17 @@ impl Wavelengths {
     pub fn sample_visible(u: f32) -> Self {
         let tanh = rotated(u).map(|u| 0.856_910_62 - 1.827_501_97 * u);
         // The inverse of the distribution, with artanh(t) = ln((1 + t) / (1 - t)) / 2.
-        let lambda_nm = tanh.map(|t| 538.0 - 0.5 * 138.888_889 * ln((1.0 + t) / (1.0 - t)));
-        // 1 / cosh^2 = 1 - tanh^2.
-        let pdf = tanh.map(|t| 0.003_939_804_2 * (1.0 - t * t));
-        Self { lambda_nm: lambda_nm.map(|nm| nm.clamp(LAMBDA_MIN_NM, LAMBDA_MAX_NM)), pdf, first_band: None }
+        // Loops become instructions on four numbers, which `map` does not.
+        let (mut lambda_nm, mut pdf) = ([0.0; N_LAMBDA], [0.0; N_LAMBDA]);
+        for i in 0..N_LAMBDA {
+            lambda_nm[i] = 538.0 - 0.5 * 138.888_889 * ln((1.0 + tanh[i]) / (1.0 - tanh[i]));
+        }
+        for i in 0..N_LAMBDA {
+            lambda_nm[i] = lambda_nm[i].clamp(LAMBDA_MIN_NM, LAMBDA_MAX_NM);
+            // 1 / cosh^2 = 1 - tanh^2.
+            pdf[i] = 0.003_939_804_2 * (1.0 - tanh[i] * tanh[i]);
+        }
+        Self { lambda_nm, pdf, first_band: None }
     }
 
     /// Wavelengths for a random number in [0, 1), equally dense everywhere.

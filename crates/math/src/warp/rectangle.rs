@@ -135,7 +135,7 @@ impl SphericalRectangle {
     }
 
     /// The same point as shares of the two edges, in [0, 1].
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn sample_shares(&self, u: Point2) -> Point2 {
         let [xu, yv] = self.sample_local(u);
@@ -148,31 +148,34 @@ impl SphericalRectangle {
     fn sample_local(&self, u: Point2) -> [f64; 2] {
         let Self { x0, y0, y1, h, r00, r01, .. } = *self;
         let hh = h * h;
-        // z components of the normals of the lower and upper side's planes, b0 = -y0 / s0 and b1 = y1 / s1.
+        // z components of the normals of the lower and upper side's planes are b0 = -y0 / s0 and b1 = y1 / s1. All that
+        // follows is scaled, to divide only once.
         let (s0, s1, xx) = ((y0 * y0 + hh).sqrt(), (y1 * y1 + hh).sqrt(), x0 * x0 + hh);
-        let inverse = 1.0 / (s0 * s1 * xx);
-        let (inverse_s0, inverse_s1) = (s1 * xx * inverse, s0 * xx * inverse);
-        let (b0, b1) = (-y0 * inverse_s0, y1 * inverse_s1);
-        // Cosine and sine of k = 2 pi - g2 - g3, where g2 and g3 are the angles at the corners at x0.
-        let cos_k = -(x0 * x0 * y0 * y1 + hh * r00 * r01) * inverse;
-        let sin_k = x0 * h * (y0 * r01 - y1 * r00) * inverse;
+        let s01 = s0 * s1;
+        let scale = s01 * xx;
+        // Cosine and sine of k = 2 pi - g2 - g3, where g2 and g3 are the angles at the corners at x0, times the scale.
+        let cos_k = -(x0 * x0 * y0 * y1 + hh * r00 * r01);
+        let sin_k = x0 * h * (y0 * r01 - y1 * r00);
         // The cut that leaves the share u of the solid angle: f = (cos(a) b0 - b1) / sin(a) with a = k + u solid_angle,
         // x = h sign(f) / sqrt(f^2 + b0^2 - 1). Differences to a = k are formed from the half angle.
         let (sin, cos) = sin_cos_turns(u.x * self.solid_angle * (0.5 / TAU));
         let (sin, cos) = (f64::from(sin), f64::from(cos));
         // Of length 1 in double precision too, by Newton's step for the inverse root.
-        let scale = 1.5 - 0.5 * (sin * sin + cos * cos);
-        let (sin, cos) = (sin * scale, cos * scale);
+        let unit = 1.5 - 0.5 * (sin * sin + cos * cos);
+        let (sin, cos) = (sin * unit, cos * unit);
         let change = [-2.0 * sin * sin, 2.0 * sin * cos];
         let cos_a = cos_k * change[0] - sin_k * change[1];
         let sin_a = sin_k + sin_k * change[0] + cos_k * change[1];
-        let f = (cos_k * b0 - b1) + cos_a * b0;
-        let shrunk = h * inverse_s0 * sin_a; // (1 - b0^2) sin(a)^2 is its square.
-        let rest = f * f - shrunk * shrunk;
-        let xu = h * sin_a.copysign(f * sin_a) / rest.max(1e-30).sqrt();
-        let xu = xu.clamp(self.x0, self.x1);
+        // f times the scale and s01, and likewise the root of (1 - b0^2) sin(a)^2.
+        let f = (-cos_k * y0 * s1 - y1 * s0 * scale) - cos_a * y0 * s1;
+        let shrunk = h * s1 * sin_a;
+        let least = 1e-15 * scale * s01;
+        let rest = ((f - shrunk) * (f + shrunk)).max(least * least).max(f64::MIN_POSITIVE);
+        let along = h * sin_a * s01;
+        let x_squared = along * along / rest;
+        let xu = x_squared.sqrt().copysign(f * sin_a).clamp(self.x0, self.x1);
         // The height on the cut.
-        let d2 = xu * xu + hh;
+        let d2 = x_squared + hh;
         let (t0, t1) = ((d2 + y0 * y0).sqrt(), (d2 + y1 * y1).sqrt());
         let inverse = 1.0 / (t0 * t1);
         let (h0, h1) = (y0 * t1 * inverse, y1 * t0 * inverse);
