@@ -3,6 +3,7 @@
 mod base64;
 mod polar;
 mod raster;
+mod wires;
 
 use std::cell::RefCell;
 
@@ -19,6 +20,7 @@ use raster::Raster;
 use base64::base64;
 
 pub use polar::Polar;
+pub use wires::Wires;
 
 /// Pixels across and down of a panel.
 const PANEL_SIZE: (u32, u32) = (640, 520);
@@ -127,6 +129,8 @@ pub enum Part {
     Panel(Panel),
     /// Curves around a point.
     Polar(Polar),
+    /// Lines in space.
+    Wires(Wires),
     /// A picture in [0, 1], with its title.
     Picture(String, Image),
 }
@@ -219,6 +223,7 @@ impl Layout {
             match part {
                 Part::Panel(panel) => panel.draw(&area),
                 Part::Polar(polar) => polar.draw(&area),
+                Part::Wires(wires) => wires.draw(&area),
                 Part::Picture(title, _) => {
                     area.draw(&Text::new(title.as_str(), (16, 12), font(18))).expect(IN_MEMORY);
                 }

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use etendue_math::{Point2, Rng, Vector3, hash64};
+use etendue_math::{Frame, Point2, Rng, Vector3, hash64};
 use etendue_scene::bsdf::classic::{FacetFresnel, VGroove};
 use etendue_scene::bsdf::fresnel::{fresnel_conductor, fresnel_dielectric, fresnel_schlick};
 use etendue_scene::bsdf::laws::{albedo, direction};
@@ -54,7 +54,7 @@ fn lobe(kind: &BsdfKind, incidence_deg: f32) -> Lobe {
     let end = if kind.lobes().is_transmissive() { 180 } else { 90 } * steps_per_degree;
     let points = (-end..=end).map(|i| {
         let angle = f64::from(i) / f64::from(steps_per_degree);
-        [angle, f_cos(kind, wo, angle)]
+        [angle, f_cos(kind, wo, in_plane(angle), 2048)]
     });
     let spikes = [Lobes::SPECULAR_REFLECT, Lobes::SPECULAR_TRANSMIT].into_iter().filter_map(|lobe| {
         let sample = kind.sample(wo, 0.5, Point2::new(0.5, 0.5), TransportMode::Importance, lobe)?;
@@ -64,23 +64,60 @@ fn lobe(kind: &BsdfKind, incidence_deg: f32) -> Lobe {
     Lobe { incidence_deg, points: points.collect(), spikes: spikes.collect() }
 }
 
-/// `f |cos|` towards a polar angle in the plane, in 1/sr; where `eval` is an estimate, the mean of many, whose
-/// directions differ by less than a quarter of a degree.
-fn f_cos(kind: &BsdfKind, wo: Vector3, angle_deg: f64) -> f64 {
-    let wi = in_plane(angle_deg);
+/// `f |cos|` in 1/sr, the mean over wavelengths; where `eval` is an estimate, the mean of `n`, whose directions differ by
+/// less than a quarter of a degree.
+fn f_cos(kind: &BsdfKind, wo: Vector3, wi: Vector3, n: usize) -> f64 {
     let of = |wo, wi: Vector3| {
         f64::from(kind.eval(wo, wi, TransportMode::Radiance, Lobes::ALL).average() * wi.z.abs())
     };
     if !kind.is_stochastic() {
         return of(wo, wi);
     }
-    const N: usize = 2048;
-    let mut rng = Rng::new(hash64(&[(angle_deg * 64.0).to_bits()]), 0);
+    let mut rng = Rng::new(hash64(&[u64::from(wi.x.to_bits()), u64::from(wi.z.to_bits())]), 0);
     let mut near = |w: Vector3| {
         let mut offset = || (rng.next_f32() - 0.5) * 0.004;
         (w + Vector3::new(offset(), offset(), offset())).normalized()
     };
-    (0..N).map(|_| of(near(wo), near(wi))).sum::<f64>() / N as f64
+    (0..n).map(|_| of(near(wo), near(wi))).sum::<f64>() / n as f64
+}
+
+/// Angle of incidence of the lobe in space and of the histograms, in degrees.
+pub const SHOWN_INCIDENCE_DEG: f32 = 45.0;
+
+/// The lobe in space: meridians about the mirror direction, and about the refracted one where light passes, as points
+/// of the direction times `f |cos|` in 1/sr. Points lie close to each other near these directions.
+#[must_use]
+pub fn meridians(kind: &BsdfKind) -> Vec<Vec<[f64; 3]>> {
+    if !kind.lobes().has_non_specular() {
+        return Vec::new();
+    }
+    const N_MERIDIANS: usize = 36;
+    const N_STEPS: usize = 60;
+    let wo = in_plane(-f64::from(SHOWN_INCIDENCE_DEG));
+    let mirror = Vector3::new(-wo.x, -wo.y, wo.z);
+    let through = kind.sample(wo, 0.999, Point2::new(0.0, 0.0), TransportMode::Radiance, Lobes::TRANSMIT);
+    let axes = [Some(mirror), through.map(|sample| sample.wi)].into_iter().flatten();
+    let lines: Vec<(Frame, f64, usize)> = axes
+        .flat_map(|axis| {
+            let side = f64::from(axis.z.signum());
+            (0..N_MERIDIANS).map(move |m| (Frame::from_z(axis), side, m))
+        })
+        .collect();
+    let line = |(frame, side, m): &(Frame, f64, usize)| {
+        let azimuth = TAU * *m as f64 / N_MERIDIANS as f64;
+        let directions = (0..=N_STEPS).map(|i| {
+            let share = i as f64 / N_STEPS as f64;
+            frame.to_world(direction((180.0 * share * share) as f32, azimuth as f32))
+        });
+        let on_side = directions.take_while(|wi| f64::from(wi.z) * side > 0.0);
+        on_side
+            .map(|wi| {
+                let f = f_cos(kind, wo, wi, 256);
+                [wi.x, wi.y, wi.z].map(|x| f64::from(x) * f)
+            })
+            .collect()
+    };
+    lines.par_iter().map(line).collect()
 }
 
 /// Share of the flux that leaves against the polar angle of incidence: by wavelength, and what is reflected and
@@ -200,16 +237,13 @@ pub struct Histogram {
     pub pdf: Curve,
 }
 
-/// Angle of incidence of the histograms in degrees.
-pub const HISTOGRAM_INCIDENCE_DEG: f32 = 45.0;
-
 /// Samples against density over polar angle and azimuth; empty if there are Dirac lobes alone.
 #[must_use]
 pub fn histograms(kind: &BsdfKind) -> Vec<Histogram> {
     if !kind.lobes().has_non_specular() {
         return Vec::new();
     }
-    let wo = direction(HISTOGRAM_INCIDENCE_DEG, PI as f32);
+    let wo = direction(SHOWN_INCIDENCE_DEG, PI as f32);
     let end = if kind.lobes().is_transmissive() { 180.0 } else { 90.0 };
     let mut counted = [Bins::new(0.0, end), Bins::new(-180.0, 180.0)];
     let mut expected = counted.clone();

@@ -2,8 +2,8 @@
 
 use etendue_image::tonemap::{Operator, apply};
 
-use super::{Curve, Exploration, HISTOGRAM_INCIDENCE_DEG, Histogram, Lobe};
-use crate::plot::{Axes, Corner, Mark, Palette, Panel, Part, Polar, Series};
+use super::{Curve, Exploration, Histogram, Lobe, SHOWN_INCIDENCE_DEG};
+use crate::plot::{Axes, Corner, Mark, Palette, Panel, Part, Polar, Series, Wires};
 
 /// Parts of the figure side by side.
 pub(super) const N_COLUMNS: usize = 3;
@@ -18,6 +18,9 @@ pub(super) fn parts(exploration: &Exploration) -> Vec<Part> {
         parts.push(Part::Panel(fresnel_panel(&exploration.fresnel)));
     }
     parts.extend(exploration.histograms.iter().map(|h| Part::Panel(histogram_panel(h))));
+    if !exploration.meridians.is_empty() {
+        parts.push(Part::Wires(wires(&exploration.meridians, scale)));
+    }
     parts.push(Part::Picture("ball under a lamp".to_owned(), apply(&exploration.ball, Operator::Clamp, 0.0)));
     parts
 }
@@ -88,6 +91,30 @@ fn polar(lobe: &Lobe, scale: LobeScale, all: &[Lobe]) -> Polar {
     }
 }
 
+/// The lobe in space, seen from the front, a little from the left and from above; light arrives from the left.
+fn wires(meridians: &[Vec<[f64; 3]>], scale: LobeScale) -> Wires {
+    let (sin_a, cos_a) = 25.0_f64.to_radians().sin_cos();
+    let (sin_e, cos_e) = 20.0_f64.to_radians().sin_cos();
+    let seen = |[x, y, z]: [f64; 3]| {
+        let (right, depth) = (x * cos_a - y * sin_a, x * sin_a + y * cos_a);
+        [right, z * cos_e + depth * sin_e]
+    };
+    let length = |p: &[f64; 3]| p.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let peak = meridians.iter().flatten().map(length).filter(|l| l.is_finite()).fold(1e-30, f64::max);
+    let scaled = |p: &[f64; 3]| {
+        let share = (length(p) / peak).max(1e-30);
+        seen(p.map(|x| x / peak * scale.radius(share) / share))
+    };
+    let angle = f64::from(SHOWN_INCIDENCE_DEG).to_radians();
+    let circle = (0..=72).map(|i| (f64::from(i) * 5.0).to_radians()).map(|a| seen([a.cos(), a.sin(), 0.0]));
+    Wires {
+        title: format!("{SHOWN_INCIDENCE_DEG}°, in space"),
+        lines: meridians.iter().map(|line| line.iter().map(scaled).collect()).collect(),
+        surface: circle.collect(),
+        arrival: vec![seen([-angle.sin(), 0.0, angle.cos()]), [0.0, 0.0]],
+    }
+}
+
 fn series(curve: &Curve, mark: Mark) -> Series {
     Series { name: curve.name.clone(), points: curve.points.clone(), mark }
 }
@@ -142,7 +169,7 @@ fn histogram_panel(histogram: &Histogram) -> Panel {
     };
     let samples = Series { name: "samples".to_owned(), points: steps(&histogram.samples), mark: Mark::Line };
     Panel {
-        title: format!("samples and density at {HISTOGRAM_INCIDENCE_DEG}°: {}", histogram.angle),
+        title: format!("samples and density at {SHOWN_INCIDENCE_DEG}°: {}", histogram.angle),
         x_label: format!("{} in degrees", histogram.angle),
         y_label: "share per degree".to_owned(),
         axes: Axes::Linear(ends(&histogram.samples)),

@@ -22,8 +22,8 @@ use etendue_transport::lpe::PathExpressions;
 use etendue_transport::{Stop, Unobserved, method, render};
 
 pub use curves::{
-    Curve, HISTOGRAM_INCIDENCE_DEG, Histogram, INCIDENCE_DEG, Lobe, albedo_curves, fresnel_curves,
-    histograms, lobes,
+    Curve, Histogram, INCIDENCE_DEG, Lobe, SHOWN_INCIDENCE_DEG, albedo_curves, fresnel_curves, histograms,
+    lobes, meridians,
 };
 pub use laws::{LawLine, LawRow, law_lines, law_names, law_table, law_table_text};
 pub use subject::{LAMBDA_NM, Subject, SubjectError, SubjectResult};
@@ -45,6 +45,8 @@ pub struct Exploration {
     pub laws: Vec<LawLine>,
     /// Lobes in the plane of incidence.
     pub lobes: Vec<Lobe>,
+    /// The lobe in space, see [`meridians`].
+    pub meridians: Vec<Vec<[f64; 3]>>,
     /// Albedo against angle.
     pub albedo: Vec<Curve>,
     /// Fresnel reflectance against angle, exact and fitted in turn; empty without an interface.
@@ -76,6 +78,7 @@ pub fn explore(subject: &Subject, n_samples: u32) -> Exploration {
         laws: law_lines(kind, &measures),
         measures,
         lobes: lobes(kind),
+        meridians: meridians(kind),
         albedo: albedo_curves(kind),
         fresnel: fresnel_curves(kind),
         histograms: histograms(kind),

@@ -14,6 +14,7 @@ impl Exploration {
     pub fn csv(&self) -> String {
         let mut text = String::from("plot,curve,angle_deg,value\n");
         let mut add = |plot: &str, curve: &str, points: &[[f64; 2]]| {
+            let curve = curve.replace(',', "");
             for [angle, value] in points {
                 let _ = writeln!(text, "{plot},{curve},{angle},{value:.6e}");
             }
@@ -27,7 +28,7 @@ impl Exploration {
         for (plot, Curve { name, points }) in
             curves.iter().flat_map(|(plot, c)| c.iter().map(move |c| (plot, c)))
         {
-            add(plot, &name.replace(',', ""), points);
+            add(plot, name, points);
         }
         for histogram in &self.histograms {
             for curve in [&histogram.samples, &histogram.pdf] {
