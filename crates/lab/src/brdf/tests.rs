@@ -127,7 +127,7 @@ fn unknown_names_are_refused() {
 /// SPEC EXP-44: figure, table and page of a material are whole.
 #[test]
 fn an_exploration_is_shown_in_full() {
-    let exploration = explore(&subject("cooktorrance", &["float slope 0.2"]), 1);
+    let exploration = explore(&subject("cooktorrance", &["float roughness 0.2"]), 1);
     let svg = exploration.svg();
     let document = roxmltree::Document::parse(&svg).expect("the figure is XML");
     let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).map(str::trim).collect();
@@ -136,7 +136,7 @@ fn an_exploration_is_shown_in_full() {
     }
     assert_eq!(document.descendants().filter(|node| node.has_tag_name("image")).count(), 1);
     let html = exploration.html();
-    assert!(html.contains("slope = 0.2") && html.contains("reciprocity"));
+    assert!(html.contains("roughness = 0.2") && html.contains("reciprocity"));
     assert!(!html.contains("src=\"http") && !html.contains("<script"));
     let image = exploration.image();
     assert_eq!(image.width % 3, 0);
