@@ -11,6 +11,7 @@ pub mod texture;
 
 pub mod bsdf;
 pub mod material;
+pub mod medium;
 
 pub mod light;
 

@@ -11,6 +11,7 @@ use crate::film::FilmSettings;
 use crate::filter::Filter;
 use crate::light::{Light, LightContext, LightId, LightPoint, LightSampler, LightTables};
 use crate::material::{MaterialContext, MaterialId, Materials};
+use crate::medium::MediumId;
 use crate::texture::{FloatTexture, TextureContext, Textures};
 
 /// What a scene knows of a shape beyond its geometry.
@@ -233,6 +234,29 @@ impl Scene {
         let [dudx, dudy, dvdx, dvdy] = uv_differentials(&derivatives, dpdx, dpdy);
         let texture = TextureContext { dpdx, dpdy, dudx, dudy, dvdx, dvdy, ..TextureContext::at(point) };
         MaterialContext::new(texture, point, &derivatives, surface.wo)
+    }
+
+    /// The medium that light is in which leaves the surface in the direction `w`, where it was in `current`. Opaque surfaces
+    /// and mixtures leave it as it is.
+    #[inline]
+    #[must_use]
+    pub fn medium_towards(
+        &self,
+        surface: &Surface,
+        w: Vector3,
+        current: Option<MediumId>,
+    ) -> Option<MediumId> {
+        match self.materials.interface(surface.material) {
+            Some(interface) => interface.towards(surface.point.ng.dot_vector(w)),
+            None => current,
+        }
+    }
+
+    /// The share of light that a medium leaves after a distance in metres.
+    #[inline]
+    #[must_use]
+    pub fn transmittance_of(&self, medium: MediumId, distance: f32, lambda: &Wavelengths) -> Sampled {
+        self.materials.media().transmittance(medium, distance, &self.textures.spectra, lambda)
     }
 
     /// Radiance in W/(m^2 sr nm) that a surface emits back along the path.

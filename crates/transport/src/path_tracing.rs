@@ -13,6 +13,7 @@ use etendue_scene::bsdf::{Bsdf, BsdfSample, Lobes, TransportMode};
 use etendue_scene::document::Entity;
 use etendue_scene::film::{AovSpace, Features, FilmKind, TileSamples};
 use etendue_scene::light::LightId;
+use etendue_scene::medium::MediumId;
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 use etendue_scene::scene::Surface;
 use etendue_scene::{Film, Scene};
@@ -251,6 +252,8 @@ struct Walk<'s> {
     depth: u32,
     last: Option<LastScattering>,
     has_scattered_widely: bool,
+    /// What the ray travels through.
+    medium: Option<MediumId>,
     radiance: Sampled,
 }
 
@@ -265,6 +268,7 @@ impl<'s> Walk<'s> {
             depth: 0,
             last: None,
             has_scattered_widely: false,
+            medium: None,
             radiance: Sampled::ZERO,
         }
     }
@@ -272,7 +276,12 @@ impl<'s> Walk<'s> {
     fn follow(mut self, tracer: &Tracer<'_>, path: &mut CameraPath<'_, '_>) -> Sampled {
         let scene = tracer.scene;
         loop {
-            let Some(hit) = tracer.intersect(&self.ray) else {
+            let hit = tracer.intersect(&self.ray);
+            if let Some(medium) = self.medium {
+                let distance = hit.as_ref().map_or(f32::INFINITY, |hit| hit.t);
+                self.beta *= scene.transmittance_of(medium, distance, path.lambda);
+            }
+            let Some(hit) = hit else {
                 self.add_surroundings(scene, path);
                 break;
             };
@@ -302,7 +311,7 @@ impl<'s> Walk<'s> {
             if self.settings.branches > 1 {
                 return self.branch(tracer, &surface, &bsdf, path);
             }
-            if !self.goes_on(&surface, &bsdf, 1.0, path) {
+            if !self.goes_on(scene, &surface, &bsdf, 1.0, path) {
                 break;
             }
         }
@@ -386,7 +395,7 @@ impl<'s> Walk<'s> {
         walks_per_light_sample: f32,
         path: &mut CameraPath<'_, '_>,
     ) -> Sampled {
-        if self.goes_on(surface, bsdf, walks_per_light_sample, path) {
+        if self.goes_on(tracer.scene, surface, bsdf, walks_per_light_sample, path) {
             self.follow(tracer, path)
         } else {
             self.radiance
@@ -397,6 +406,7 @@ impl<'s> Walk<'s> {
     #[inline]
     fn goes_on(
         &mut self,
+        scene: &Scene,
         surface: &Surface,
         bsdf: &Bsdf,
         walks_per_light_sample: f32,
@@ -407,6 +417,7 @@ impl<'s> Walk<'s> {
         else {
             return false;
         };
+        self.medium = scene.medium_towards(surface, sample.wi, self.medium);
         self.scatter(surface, &sample, walks_per_light_sample, path.layers);
         self.survives_roulette(path)
     }
@@ -483,7 +494,10 @@ impl<'s> Walk<'s> {
         if visible == 0.0 {
             return;
         }
-        let through = self.beta * visible;
+        let mut through = self.beta * visible;
+        if let Some(medium) = tracer.scene.medium_towards(surface, light.sample.wi, self.medium) {
+            through *= tracer.scene.transmittance_of(medium, light.sample.distance, path.lambda);
+        }
         self.radiance += through * unoccluded;
         if path.layers.is_idle() {
             return;

@@ -31,7 +31,7 @@ pub struct Coat {
 impl Coat {
     pub(super) fn build(p: &mut Parameters<'_, '_>, eta: &'static str, roughness: &RoughnessNames) -> Self {
         Self {
-            eta: RefractiveIndex::build(p, eta),
+            eta: RefractiveIndex::build(p, eta, RefractiveIndex::GLASS),
             roughness: Roughness::build(p, roughness),
             thickness: p.float_texture("thickness", 0.01),
             g: p.float_texture("g", 0.0),

@@ -1,19 +1,24 @@
 //! Glass, water, diamond: a boundary between transparent media, smooth or rough.
 
-use etendue_spectrum::Wavelengths;
+use etendue_spectrum::{Spectrum, Wavelengths};
 
 use super::index::RefractiveIndex;
 use super::roughness::{Roughness, RoughnessNames};
 use super::{MaterialContext, Materials, Perturbation, spec};
 use crate::bsdf::{BsdfKind, Dielectric};
-use crate::parameters::{ParameterSpec, Parameters};
+use crate::medium::Interface;
+use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
 use crate::texture::Textures;
 
 /// Parameters of `dielectric`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DielectricMaterial {
-    /// Index inside, where the normal does not point, relative to outside.
+    /// Index inside, where the normal does not point.
     pub eta: RefractiveIndex,
+    /// Index outside.
+    pub eta_outside: RefractiveIndex,
+    /// What absorbs on both sides.
+    pub interface: Interface,
     /// Roughness.
     pub roughness: Roughness,
     /// Relief.
@@ -24,6 +29,9 @@ impl DielectricMaterial {
     /// What scene files may say.
     pub const PARAMETERS: &'static [ParameterSpec] = &[
         spec::ETA,
+        spec::ETA_EXTERIOR,
+        spec::ABSORPTION,
+        spec::ABSORPTION_EXTERIOR,
         spec::ROUGHNESS,
         spec::U_ROUGHNESS,
         spec::V_ROUGHNESS,
@@ -33,8 +41,20 @@ impl DielectricMaterial {
     ];
 
     pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
+        let mut medium = |name| {
+            let absorption = p.spectrum(name, SpectrumRole::Unbounded)?;
+            if matches!(absorption, Spectrum::Constant(sigma_a) if sigma_a < 0.0) {
+                let span = p.span_of(name);
+                p.diagnostics()
+                    .warning(span, "light does not grow on its way: negative absorption is taken as 0");
+            }
+            Some(materials.add_medium(absorption))
+        };
+        let interface = Interface { inside: medium("absorption"), outside: medium("absorption_exterior") };
         Self {
-            eta: RefractiveIndex::build(p, "eta"),
+            eta: RefractiveIndex::build(p, "eta", RefractiveIndex::GLASS),
+            eta_outside: RefractiveIndex::build(p, "eta_exterior", RefractiveIndex::VACUUM),
+            interface,
             roughness: Roughness::build(p, &RoughnessNames::PLAIN),
             perturbation: Perturbation::build(p, materials),
         }
@@ -47,7 +67,7 @@ impl DielectricMaterial {
         ctx: &MaterialContext,
         lambda: &mut Wavelengths,
     ) -> BsdfKind {
-        let eta = self.eta.of_hero(textures, lambda);
+        let eta = self.eta.of_hero(textures, lambda) / self.eta_outside.of_hero(textures, lambda);
         BsdfKind::Dielectric(Dielectric {
             microfacets: self.roughness.microfacets(textures, &ctx.texture),
             eta,

@@ -5,7 +5,7 @@ use etendue_spectrum::{Spectrum, Wavelengths};
 use crate::parameters::{Parameters, SpectrumRole};
 use crate::texture::{SpectrumTexture, TextureContext, Textures};
 
-/// The index inside relative to outside, the same all over the surface.
+/// The index on one side, or of one side relative to the other, the same all over the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RefractiveIndex(pub Spectrum);
 
@@ -13,8 +13,11 @@ impl RefractiveIndex {
     /// Common glass, without dispersion.
     pub const GLASS: Self = Self(Spectrum::Constant(1.5));
 
-    pub(super) fn build(p: &mut Parameters<'_, '_>, name: &'static str) -> Self {
-        p.spectrum(name, SpectrumRole::Unbounded).map_or(Self::GLASS, Self)
+    /// Nothing, and nearly so air.
+    pub const VACUUM: Self = Self(Spectrum::Constant(1.0));
+
+    pub(super) fn build(p: &mut Parameters<'_, '_>, name: &'static str, default: Self) -> Self {
+        p.spectrum(name, SpectrumRole::Unbounded).map_or(default, Self)
     }
 
     /// The index at the first wavelength. If the index varies, the other wavelengths would take other ways: they are

@@ -6,6 +6,7 @@ use etendue_spectrum::{Spectrum, Wavelengths};
 
 use super::{DiffuseMaterial, Material, MaterialContext, NormalMap, NormalMapId, Perturbation};
 use crate::bsdf::Bsdf;
+use crate::medium::{Interface, Media, MediumId};
 use crate::parameters::Parameters;
 use crate::texture::{SpectrumTexture, Textures};
 
@@ -20,6 +21,7 @@ pub struct Materials {
     /// Which of them look the same all over a surface.
     uniform: Vec<bool>,
     normal_maps: Vec<NormalMap>,
+    media: Media,
 }
 
 impl Materials {
@@ -63,6 +65,28 @@ impl Materials {
             self.normal_maps.len() - 1
         });
         NormalMapId(index as u32)
+    }
+
+    /// Adds a medium by its absorption coefficient in 1/m.
+    pub fn add_medium(&mut self, absorption: Spectrum) -> MediumId {
+        self.media.add(absorption)
+    }
+
+    /// What transparent surfaces have on their sides.
+    #[inline]
+    #[must_use]
+    pub const fn media(&self) -> &Media {
+        &self.media
+    }
+
+    /// The media on the two sides of a surface of this material; `None` if the material does not part space.
+    #[inline]
+    #[must_use]
+    pub fn interface(&self, id: MaterialId) -> Option<Interface> {
+        match self.get(id) {
+            Material::Dielectric(material) => Some(material.interface),
+            _ => None,
+        }
     }
 
     /// Number of materials.

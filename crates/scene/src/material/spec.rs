@@ -29,6 +29,23 @@ pub(super) const ETA: ParameterSpec = spec(
     "1.5",
     "Index of refraction inside relative to outside; spectra disperse light.",
 );
+pub(super) const ETA_EXTERIOR: ParameterSpec = spec(
+    "eta_exterior",
+    "float or spectrum",
+    "1",
+    "Index of refraction outside, by which eta is divided: of glass, where liquid touches it.",
+);
+pub(super) const ABSORPTION: ParameterSpec = ParameterSpec {
+    unit: "1/m",
+    ..spec(
+        "absorption",
+        "float or spectrum",
+        "0",
+        "Absorption coefficient inside: exp(-absorption d) gets through.",
+    )
+};
+pub(super) const ABSORPTION_EXTERIOR: ParameterSpec =
+    ParameterSpec { name: "absorption_exterior", doc: "Absorption coefficient outside.", ..ABSORPTION };
 pub(super) const DISPLACEMENT: ParameterSpec = ParameterSpec {
     unit: "m",
     ..spec("displacement", "float texture", "", "Height whose slope bends the shading normal (bump mapping).")

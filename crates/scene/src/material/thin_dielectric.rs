@@ -22,7 +22,10 @@ impl ThinDielectricMaterial {
     pub const PARAMETERS: &'static [ParameterSpec] = &[spec::ETA, spec::DISPLACEMENT, spec::NORMAL_MAP];
 
     pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
-        Self { eta: RefractiveIndex::build(p, "eta"), perturbation: Perturbation::build(p, materials) }
+        Self {
+            eta: RefractiveIndex::build(p, "eta", RefractiveIndex::GLASS),
+            perturbation: Perturbation::build(p, materials),
+        }
     }
 
     #[inline]

@@ -13,6 +13,7 @@ mod determinism;
 mod features;
 mod furnace;
 mod layers;
+mod media;
 mod merging;
 mod passes;
 mod pictures;
