@@ -105,6 +105,11 @@ pub fn law_lines(kind: &BsdfKind, measures: &Measures) -> Vec<LawLine> {
             estimate_text(measures.furnace, 4),
         ),
         line(Law::Density, density, format!("{:.4}", measures.chi2_p)),
+        line(
+            Law::Density,
+            "relative difference of pdf and the inverse Jacobian of sampling",
+            if is_stochastic { "not defined".to_owned() } else { format!("{:.1e}", measures.jacobian_error) },
+        ),
         line(Law::Density, "greatest integral of pdf", format!("{:.4}", measures.pdf_integral_max)),
         line(
             Law::Weight,

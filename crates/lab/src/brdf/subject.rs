@@ -89,12 +89,7 @@ impl Subject {
         let numbered = || name.parse::<usize>().ok().filter(|index| (1..n).contains(index));
         match named.or_else(numbered) {
             Some(index) => Self::of_document(document, diagnostics, index),
-            None => {
-                let names = document.materials.iter().filter_map(|material| material.name.as_deref());
-                let mut message = unknown("material", name, names);
-                message.push_str(&format!("; those without a name are numbers from 1 to {}", n - 1));
-                Err(SubjectError::Request(message))
-            }
+            None => Err(SubjectError::Request(no_such_material(&document, name))),
         }
     }
 
@@ -122,6 +117,20 @@ impl Subject {
             studio,
         };
         Ok((subject, diagnostics, document.sources))
+    }
+}
+
+/// What to say of a material that a scene does not have.
+fn no_such_material(document: &Document, name: &str) -> String {
+    let names: Vec<&str> = document.materials.iter().filter_map(|m| m.name.as_deref()).collect();
+    // The first material is the default, which no file wrote.
+    match (document.materials.len() - 1, names.is_empty()) {
+        (0, _) => "the scene has no materials".to_owned(),
+        (n, true) => format!("there is no material \"{name}\"; those of the scene are numbers from 1 to {n}"),
+        (n, false) => {
+            let message = unknown("material", name, names.into_iter());
+            format!("{message}; all are also numbers from 1 to {n}")
+        }
     }
 }
 

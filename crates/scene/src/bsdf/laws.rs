@@ -90,6 +90,8 @@ pub struct Measures {
     pub chi2_p: f64,
     /// See [`pdf_integral_max`].
     pub pdf_integral_max: f64,
+    /// See [`jacobian_error`].
+    pub jacobian_error: f64,
     /// See [`sample_errors`].
     pub sample_errors: SampleErrors,
     /// See [`fault`].
@@ -106,6 +108,7 @@ impl Measures {
             furnace: furnace(kind),
             chi2_p: chi2_p(kind),
             pdf_integral_max: pdf_integral_max(kind),
+            jacobian_error: jacobian_error(kind),
             sample_errors: sample_errors(kind),
             fault: fault(kind),
         }
@@ -126,6 +129,7 @@ impl Measures {
                 Law::Density,
                 self.chi2_p >= 1e-6
                     && self.pdf_integral_max < largest_integral
+                    && self.jacobian_error <= 2e-2
                     && self.sample_errors.density <= 2e-2,
             ),
             (Law::Weight, self.sample_errors.weight <= 5e-3),
@@ -391,6 +395,46 @@ pub fn pdf_integral_max(kind: &BsdfKind) -> f64 {
     }
     let integral = |wo| integrate_sphere(|wi| f64::from(kind.pdf(wo, wi, Lobes::ALL)), 1e-2);
     directions(kind).into_iter().map(integral).fold(0.0, f64::max)
+}
+
+/// How far the density of each lobe is from the inverse of the Jacobian of its sampling: the relative difference that a
+/// twentieth of random points exceed. There is no chance in it. Lobes that mix several ways of sampling are left out, as
+/// are Dirac lobes and likenesses of densities; 0 if nothing is left.
+#[must_use]
+pub fn jacobian_error(kind: &BsdfKind) -> f64 {
+    if kind.is_stochastic() {
+        return 0.0;
+    }
+    let mut rng = Rng::new(hash64(&[7]), 0);
+    let mut errors = Vec::new();
+    for wo in directions(kind) {
+        for lobe in Lobes::EACH.into_iter().filter(|lobe| kind.lobes().contains(*lobe) && !lobe.is_specular())
+        {
+            // At the borders of the square maps may jump.
+            let mut points = (0..60).map(|_| [(); 2].map(|()| 0.05 + 0.9 * rng.next_f32()));
+            errors.extend(points.by_ref().filter_map(|point| jacobian_error_at(kind, wo, lobe, point)));
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    errors.get(errors.len() * 19 / 20).copied().unwrap_or(0.0)
+}
+
+/// One point; `None` where nothing is sampled, or not by one map.
+fn jacobian_error_at(kind: &BsdfKind, wo: Vector3, lobe: Lobes, [x, y]: [f32; 2]) -> Option<f64> {
+    const STEP: f32 = 4e-3;
+    let sample_by = |u_component, x, y| {
+        let sample = kind.sample(wo, u_component, Point2::new(x, y), TransportMode::Radiance, lobe)?;
+        (!sample.is_specular()).then_some(sample.wi)
+    };
+    let at = |x, y| sample_by(0.5, x, y);
+    let wi = at(x, y)?;
+    if sample_by(0.01, x, y)? != wi || sample_by(0.99, x, y)? != wi {
+        return None;
+    }
+    let dx = at(x + STEP, y)? - at(x - STEP, y)?;
+    let dy = at(x, y + STEP)? - at(x, y - STEP)?;
+    let area = dx.cross(dy).length() / (4.0 * STEP * STEP);
+    Some(f64::from((area * kind.pdf(wo, wi, lobe) - 1.0).abs()))
 }
 
 /// How far samples are from what `eval` and `pdf` say of their directions.
