@@ -4,6 +4,7 @@
 
 use etendue_spectrum::Sampled;
 
+use super::facetted::{AnyFacets, CompensatedConductor, FacetShape, Facetted, FresnelForm, Principled};
 use super::laws::Law;
 use super::microfacet::Microfacets;
 use super::{
@@ -35,6 +36,12 @@ impl Configuration {
     pub(super) fn with(mut self, name: &'static str, values: &[f32]) -> Self {
         let values: Vec<String> = values.iter().map(f32::to_string).collect();
         self.parameters.push((name, values.join(" ")));
+        self
+    }
+
+    /// With a parameter that is a word.
+    pub(super) fn named(mut self, name: &'static str, word: &str) -> Self {
+        self.parameters.push((name, word.to_owned()));
         self
     }
 
@@ -86,8 +93,36 @@ pub fn catalogue() -> Vec<Configuration> {
         layered("rough both", coated(glass(0.2, 0.1, 1.5), Base::Conductor(copper(0.2, 0.4)))),
         layered("milky lacquer", milky(coated(smooth, mirror))),
     ];
+    rows.extend(facetted_rows());
     rows.extend(classic::configurations());
     rows
+}
+
+fn facetted_rows() -> Vec<Configuration> {
+    use FacetShape::{Beckmann, Ggx};
+    use FresnelForm::{Exact, Schlick};
+    vec![
+        other_metal("copper, Beckmann 0.1", copper(0.1, 0.1), Beckmann, Exact),
+        other_metal("copper, Beckmann 0.6", copper(0.6, 0.6), Beckmann, Exact),
+        other_metal("copper, Beckmann, brushed", copper(0.1, 0.5), Beckmann, Schlick),
+        other_metal("copper, Schlick", copper(0.3, 0.3), Ggx, Schlick),
+        all_bounces("silver, all bounces, alpha 0.1", silver(0.1), Ggx).lossless(),
+        all_bounces("silver, all bounces, alpha 0.5", silver(0.5), Ggx).lossless(),
+        all_bounces("silver, all bounces, alpha 1", silver(1.0), Ggx).lossless(),
+        all_bounces("silver, all bounces, Beckmann 0.6", silver(0.6), Beckmann).lossless(),
+        all_bounces("copper, all bounces, brushed", copper(0.2, 0.6), Ggx),
+        all_bounces("copper mirror, all bounces", copper(0.0, 0.0), Ggx),
+        principled("principled, plastic", [0.1, 0.2, 0.4, 0.5], 0.0, 0.3),
+        principled("principled, metal", [0.9, 0.7, 0.4, 0.3], 1.0, 0.5),
+        principled("principled, between", [0.9, 0.7, 0.4, 0.3], 0.4, 0.8),
+        principled("principled, smooth", [0.5; 4], 0.0, 0.1),
+        principled("principled, white", [1.0; 4], 0.0, 0.5).lossless(),
+        principled("principled, white, rough", [1.0; 4], 0.5, 1.0).lossless(),
+        other_glass("glass, Beckmann 0.2", glass(0.2, 0.2, 1.5), Beckmann, Exact),
+        other_glass("glass, Beckmann, brushed", glass(0.6, 0.2, 1.5), Beckmann, Exact),
+        other_glass("glass, Schlick", glass(0.3, 0.3, 1.5), Ggx, Schlick),
+        other_glass("smooth glass, Schlick", glass(0.0, 0.0, 1.5), Ggx, Schlick).breaking(&[]),
+    ]
 }
 
 fn diffuse(name: &'static str, reflectance: [f32; 4]) -> Configuration {
@@ -110,6 +145,78 @@ fn metal(name: &'static str, conductor: Conductor) -> Configuration {
         .with("eta", &conductor.eta.to_array())
         .with("k", &conductor.k.to_array())
         .with_alpha("alpha", conductor.microfacets)
+}
+
+impl FacetShape {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Ggx => "ggx",
+            Self::Beckmann => "beckmann",
+        }
+    }
+}
+
+impl FresnelForm {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Schlick => "schlick",
+        }
+    }
+}
+
+fn other_facets(alphas: Microfacets, shape: FacetShape, fresnel: FresnelForm) -> AnyFacets {
+    AnyFacets { alphas, shape, fresnel }
+}
+
+/// Metal with facets of some shape.
+fn facetted_metal(metal: Conductor, shape: FacetShape, fresnel: FresnelForm) -> Conductor<AnyFacets> {
+    let microfacets = other_facets(metal.microfacets, shape, fresnel);
+    Conductor { microfacets, eta: metal.eta, k: metal.k }
+}
+
+fn other_metal(
+    name: &'static str,
+    plain: Conductor,
+    shape: FacetShape,
+    fresnel: FresnelForm,
+) -> Configuration {
+    let kind = BsdfKind::Facetted(Facetted::Conductor(facetted_metal(plain, shape, fresnel)));
+    Configuration { kind, ..metal(name, plain) }
+        .named("distribution", shape.name())
+        .named("fresnel", fresnel.name())
+}
+
+fn all_bounces(name: &'static str, plain: Conductor, shape: FacetShape) -> Configuration {
+    let once = facetted_metal(plain, shape, FresnelForm::Exact);
+    let kind = BsdfKind::Facetted(Facetted::CompensatedConductor(CompensatedConductor::new(once)));
+    Configuration { kind, ..metal(name, plain) }
+        .named("distribution", shape.name())
+        .named("multiplescattering", "true")
+}
+
+fn principled(name: &'static str, base: [f32; 4], metallic: f32, roughness: f32) -> Configuration {
+    let model = Principled::new(Sampled::from_array(base), metallic, roughness, 1.5);
+    Configuration::new(name, "principled", BsdfKind::Facetted(Facetted::Principled(model)))
+        .with("basecolor", &base)
+        .with("metallic", &[metallic])
+        .with("roughness", &[roughness])
+        .with("ior", &[1.5])
+}
+
+fn other_glass(
+    name: &'static str,
+    plain: Dielectric,
+    shape: FacetShape,
+    fresnel: FresnelForm,
+) -> Configuration {
+    let microfacets = other_facets(plain.microfacets, shape, fresnel);
+    let kind = BsdfKind::Facetted(Facetted::Dielectric(Dielectric { microfacets, eta: plain.eta }));
+    Configuration { kind, ..transparent(name, plain) }
+        .named("distribution", shape.name())
+        .named("fresnel", fresnel.name())
+        .lossless()
+        .breaking(&[Law::Furnace])
 }
 
 fn transparent(name: &'static str, dielectric: Dielectric) -> Configuration {

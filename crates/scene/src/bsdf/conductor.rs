@@ -2,28 +2,30 @@
 //!
 //! `f = D(wm) F(wo·wm) G(wo, wi) / (4 |cos_o| |cos_i|)` with the half vector `wm` (Torrance and Sparrow 1967, "Theory
 //! for Off-Specular Reflection From Roughened Surfaces"; Cook and Torrance 1982). This is SPEC BRDF-16 with GGX and
-//! Smith's shadowing in place of Gaussian slopes and V-grooves; see [`super::microfacet`] for what is lost.
+//! Smith's shadowing in place of Gaussian slopes and V-grooves; see [`super::microfacet`] for what is lost. Other facets are
+//! a parameter.
 
 use etendue_math::{Point2, Vector3};
 use etendue_spectrum::Sampled;
 
-use super::fresnel::{fresnel_conductor, reflect};
+use super::facetted::Facets;
+use super::fresnel::reflect;
 use super::local::{abs_cos, mirror, same_hemisphere};
 use super::microfacet::Microfacets;
 use super::{BsdfSample, Lobes};
 
 /// A smooth or rough metal in the shading frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conductor {
+pub struct Conductor<F = Microfacets> {
     /// Roughness.
-    pub microfacets: Microfacets,
+    pub microfacets: F,
     /// Real part of the index relative to the outside.
     pub eta: Sampled,
     /// Imaginary part of the index (absorption) relative to the outside.
     pub k: Sampled,
 }
 
-impl Conductor {
+impl<F: Facets> Conductor<F> {
     /// The lobe present.
     #[inline]
     #[must_use]
@@ -44,7 +46,7 @@ impl Conductor {
     pub fn eval_and_pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> (Sampled, f32) {
         let Some(wm) = self.half_vector(wo, wi, lobes) else { return (Sampled::ZERO, 0.0) };
         let (reflection, pdf_w) = self.microfacets.reflection(wo, wi, wm);
-        (fresnel_conductor(wo.dot(wm), self.eta, self.k) * reflection, pdf_w) // [SPEC BRDF-16]
+        (self.microfacets.metal_reflectance(wo.dot(wm), self.eta, self.k) * reflection, pdf_w) // [SPEC BRDF-16]
     }
 
     /// The mirror direction of a facet visible from `wo`.
@@ -55,7 +57,7 @@ impl Conductor {
             return None;
         }
         if self.microfacets.is_smooth() {
-            let fresnel = fresnel_conductor(abs_cos(wo), self.eta, self.k);
+            let fresnel = self.microfacets.metal_reflectance(abs_cos(wo), self.eta, self.k);
             return Some(BsdfSample::specular(mirror(wo), fresnel, 1.0, Lobes::SPECULAR_REFLECT, 1.0));
         }
         let wm = self.microfacets.sample_visible_normal(wo, u);
@@ -67,7 +69,8 @@ impl Conductor {
         let (_, pdf_w) = self.microfacets.reflection(wo, wi, wm);
         (pdf_w > 0.0 && pdf_w.is_finite()).then(|| BsdfSample {
             wi,
-            weight: fresnel_conductor(cos_m, self.eta, self.k) * self.microfacets.g_over_g1(wo, wi),
+            weight: self.microfacets.metal_reflectance(cos_m, self.eta, self.k)
+                * self.microfacets.g_over_g1(wo, wi),
             pdf_w,
             pmf: 0.0,
             lobe: Lobes::GLOSSY_REFLECT,

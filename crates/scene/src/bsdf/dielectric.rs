@@ -10,16 +10,17 @@
 use etendue_math::{Point2, Vector3, sqr};
 use etendue_spectrum::Sampled;
 
-use super::fresnel::{fresnel_dielectric, reflect, refract};
+use super::facetted::Facets;
+use super::fresnel::{reflect, refract};
 use super::local::{mirror, same_hemisphere};
 use super::microfacet::Microfacets;
 use super::{BsdfSample, Lobes, TransportMode};
 
 /// A smooth or rough boundary between transparent media, in the shading frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dielectric {
+pub struct Dielectric<F = Microfacets> {
     /// Roughness.
-    pub microfacets: Microfacets,
+    pub microfacets: F,
     /// Index below (-z) relative to that above (+z), for all wavelengths of the path.
     pub eta: f32,
 }
@@ -32,7 +33,7 @@ struct Facet {
     lobe: Lobes,
 }
 
-impl Dielectric {
+impl<F: Facets> Dielectric<F> {
     /// The lobes present. Equal indices pass light straight on, whatever the roughness.
     #[inline]
     #[must_use]
@@ -56,7 +57,7 @@ impl Dielectric {
     #[must_use]
     pub fn eval(&self, wo: Vector3, wi: Vector3, mode: TransportMode, lobes: Lobes) -> Sampled {
         let Some(Facet { wm, eta, lobe }) = self.facet(wo, wi, lobes) else { return Sampled::ZERO };
-        let f = fresnel_dielectric(wo.dot(wm), self.eta);
+        let f = self.microfacets.reflectance(wo.dot(wm), self.eta);
         let d_g = self.microfacets.d(wm) * self.microfacets.g_over_cosines(wo, wi);
         let value = if lobe == Lobes::GLOSSY_REFLECT {
             0.25 * d_g * f
@@ -90,7 +91,7 @@ impl Dielectric {
     #[must_use]
     pub fn pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> f32 {
         let Some(Facet { wm, eta, lobe }) = self.facet(wo, wi, lobes) else { return 0.0 };
-        let f = fresnel_dielectric(wo.dot(wm), self.eta);
+        let f = self.microfacets.reflectance(wo.dot(wm), self.eta);
         let (p_reflect, p_transmit) = probabilities(f, Lobes::GLOSSY_REFLECT, Lobes::GLOSSY_TRANSMIT, lobes);
         let pdf_m = self.microfacets.visible_normal_pdf(wo, wm);
         if lobe == Lobes::GLOSSY_REFLECT {
@@ -109,7 +110,7 @@ impl Dielectric {
         lobes: Lobes,
     ) -> Option<BsdfSample> {
         // Equal indices reflect nothing, not even what rounding would leave.
-        let f = if self.eta == 1.0 { 0.0 } else { fresnel_dielectric(wo.z, self.eta) };
+        let f = if self.eta == 1.0 { 0.0 } else { self.microfacets.reflectance(wo.z, self.eta) };
         let (p_reflect, p_transmit) =
             probabilities(f, Lobes::SPECULAR_REFLECT, Lobes::SPECULAR_TRANSMIT, lobes);
         if u_component < p_reflect {
@@ -141,7 +142,7 @@ impl Dielectric {
     ) -> Option<BsdfSample> {
         let wm = self.microfacets.sample_visible_normal(wo, u);
         let pdf_m = self.microfacets.visible_normal_pdf(wo, wm);
-        let f = fresnel_dielectric(wo.dot(wm), self.eta);
+        let f = self.microfacets.reflectance(wo.dot(wm), self.eta);
         let (p_reflect, p_transmit) = probabilities(f, Lobes::GLOSSY_REFLECT, Lobes::GLOSSY_TRANSMIT, lobes);
         let (wi, weight, pdf_w, lobe, eta) = if u_component < p_reflect {
             let wi = reflect(wo, wm);

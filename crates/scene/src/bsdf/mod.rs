@@ -21,6 +21,7 @@ mod conductor;
 mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
+pub mod facetted;
 mod layered;
 mod thin_dielectric;
 
@@ -38,6 +39,7 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
+pub use facetted::Facetted;
 pub use layered::{Base, Layered};
 pub use lobes::{BsdfSample, Lobes, TransportMode};
 pub use thin_dielectric::ThinDielectric;
@@ -61,6 +63,8 @@ pub enum BsdfKind {
     ThinDielectric(ThinDielectric),
     /// A coated diffuse or metal surface.
     Layered(Layered),
+    /// Rough metal or glass of other facets, or with all bounces.
+    Facetted(Facetted),
     /// A model of the literature: Phong, Ward, Schlick and others.
     Classic(Classic),
 }
@@ -77,6 +81,7 @@ impl BsdfKind {
             Self::Dielectric(bsdf) => bsdf.lobes(),
             Self::ThinDielectric(bsdf) => bsdf.lobes(),
             Self::Layered(bsdf) => bsdf.lobes(),
+            Self::Facetted(bsdf) => bsdf.lobes(),
             Self::Classic(bsdf) => bsdf.lobes(),
         }
     }
@@ -92,6 +97,7 @@ impl BsdfKind {
             Self::Dielectric(bsdf) => bsdf.eval(wo, wi, mode, lobes),
             Self::ThinDielectric(_) => Sampled::ZERO,
             Self::Layered(bsdf) => bsdf.eval(wo, wi, mode, lobes),
+            Self::Facetted(bsdf) => bsdf.eval(wo, wi, mode, lobes),
             Self::Classic(bsdf) => bsdf.eval(wo, wi, mode, lobes),
         }
     }
@@ -114,6 +120,7 @@ impl BsdfKind {
             Self::Dielectric(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
             Self::ThinDielectric(bsdf) => bsdf.sample(wo, u_component, lobes),
             Self::Layered(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
+            Self::Facetted(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
             Self::Classic(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
         }
     }
@@ -129,6 +136,7 @@ impl BsdfKind {
             Self::Dielectric(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::ThinDielectric(_) => 0.0,
             Self::Layered(bsdf) => bsdf.pdf(wo, wi, lobes),
+            Self::Facetted(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::Classic(bsdf) => bsdf.pdf(wo, wi, lobes),
         }
     }
@@ -153,6 +161,7 @@ impl BsdfKind {
                 Self::Dielectric(Dielectric { microfacets: bsdf.microfacets.regularized(), ..bsdf })
             }
             Self::Layered(bsdf) => Self::Layered(bsdf.regularized()),
+            Self::Facetted(bsdf) => Self::Facetted(bsdf.regularized()),
             Self::Classic(bsdf) => Self::Classic(bsdf.regularized()),
             Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::ThinDielectric(_) => self,
         }
@@ -166,9 +175,11 @@ impl BsdfKind {
             Self::Diffuse(bsdf) => bsdf.reflectance,
             Self::DiffuseTransmission(bsdf) => bsdf.reflectance + bsdf.transmittance,
             Self::ThinDielectric(_) => Sampled::ONE,
-            Self::Conductor(_) | Self::Dielectric(_) | Self::Layered(_) | Self::Classic(_) => {
-                self.sampled_albedo(wo)
-            }
+            Self::Conductor(_)
+            | Self::Dielectric(_)
+            | Self::Layered(_)
+            | Self::Facetted(_)
+            | Self::Classic(_) => self.sampled_albedo(wo),
         }
     }
 
@@ -328,6 +339,7 @@ impl Bsdf {
             BsdfKind::Conductor(bsdf) => bsdf.microfacets.mean_alpha(),
             BsdfKind::Dielectric(bsdf) if bsdf.lobes().is_glossy() => bsdf.microfacets.mean_alpha(),
             BsdfKind::Layered(bsdf) if bsdf.lobes().is_glossy() => bsdf.glossy_roughness(),
+            BsdfKind::Facetted(bsdf) => bsdf.glossy_roughness(),
             BsdfKind::Classic(bsdf) => bsdf.glossy_roughness(),
             _ => 0.0,
         }

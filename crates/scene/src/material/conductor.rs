@@ -4,8 +4,9 @@ use etendue_spectrum::Wavelengths;
 
 use super::metal::{Metal, MetalNames};
 use super::roughness::{Roughness, RoughnessNames};
-use super::{MaterialContext, Materials, Perturbation, spec};
-use crate::bsdf::{BsdfKind, Conductor};
+use super::{FacetOptions, MaterialContext, Materials, Perturbation, spec};
+use crate::bsdf::facetted::CompensatedConductor;
+use crate::bsdf::{BsdfKind, Conductor, Facetted};
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::Textures;
 
@@ -16,6 +17,10 @@ pub struct ConductorMaterial {
     pub metal: Metal,
     /// Roughness.
     pub roughness: Roughness,
+    /// Its facets.
+    pub facets: FacetOptions,
+    /// With the light that bounces several times among them.
+    pub bounces: bool,
     /// Relief.
     pub perturbation: Perturbation,
 }
@@ -30,6 +35,9 @@ impl ConductorMaterial {
         spec::U_ROUGHNESS,
         spec::V_ROUGHNESS,
         spec::REMAP_ROUGHNESS,
+        FacetOptions::DISTRIBUTION,
+        FacetOptions::FRESNEL,
+        FacetOptions::MULTIPLE_SCATTERING,
         spec::DISPLACEMENT,
         spec::NORMAL_MAP,
     ];
@@ -38,6 +46,8 @@ impl ConductorMaterial {
         Self {
             metal: Metal::build(p, &MetalNames { eta: "eta", k: "k" }),
             roughness: Roughness::build(p, &RoughnessNames::PLAIN),
+            facets: FacetOptions::build(p),
+            bounces: p.bool("multiplescattering", false),
             perturbation: Perturbation::build(p, materials),
         }
     }
@@ -45,10 +55,15 @@ impl ConductorMaterial {
     #[inline]
     pub(super) fn bsdf(&self, textures: &Textures, ctx: &MaterialContext, lambda: &Wavelengths) -> BsdfKind {
         let (eta, k) = self.metal.eta_k(textures, ctx, lambda);
-        BsdfKind::Conductor(Conductor {
-            microfacets: self.roughness.microfacets(textures, &ctx.texture),
-            eta,
-            k,
+        let microfacets = self.roughness.microfacets(textures, &ctx.texture);
+        if self.facets.are_plain() && !self.bounces {
+            return BsdfKind::Conductor(Conductor { microfacets, eta, k });
+        }
+        let conductor = Conductor { microfacets: self.facets.of(microfacets), eta, k };
+        BsdfKind::Facetted(if self.bounces {
+            Facetted::CompensatedConductor(CompensatedConductor::new(conductor))
+        } else {
+            Facetted::Conductor(conductor)
         })
     }
 }

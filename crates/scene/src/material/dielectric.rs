@@ -4,8 +4,8 @@ use etendue_spectrum::{Spectrum, Wavelengths};
 
 use super::index::RefractiveIndex;
 use super::roughness::{Roughness, RoughnessNames};
-use super::{MaterialContext, Materials, Perturbation, spec};
-use crate::bsdf::{BsdfKind, Dielectric};
+use super::{FacetOptions, MaterialContext, Materials, Perturbation, spec};
+use crate::bsdf::{BsdfKind, Dielectric, Facetted};
 use crate::medium::Interface;
 use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
 use crate::texture::Textures;
@@ -21,6 +21,8 @@ pub struct DielectricMaterial {
     pub interface: Interface,
     /// Roughness.
     pub roughness: Roughness,
+    /// Its facets.
+    pub facets: FacetOptions,
     /// Relief.
     pub perturbation: Perturbation,
 }
@@ -36,6 +38,8 @@ impl DielectricMaterial {
         spec::U_ROUGHNESS,
         spec::V_ROUGHNESS,
         spec::REMAP_ROUGHNESS,
+        FacetOptions::DISTRIBUTION,
+        FacetOptions::FRESNEL,
         spec::DISPLACEMENT,
         spec::NORMAL_MAP,
     ];
@@ -56,6 +60,7 @@ impl DielectricMaterial {
             eta_outside: RefractiveIndex::build(p, "eta_exterior", RefractiveIndex::VACUUM),
             interface,
             roughness: Roughness::build(p, &RoughnessNames::PLAIN),
+            facets: FacetOptions::build(p),
             perturbation: Perturbation::build(p, materials),
         }
     }
@@ -68,9 +73,10 @@ impl DielectricMaterial {
         lambda: &mut Wavelengths,
     ) -> BsdfKind {
         let eta = self.eta.of_hero(textures, lambda) / self.eta_outside.of_hero(textures, lambda);
-        BsdfKind::Dielectric(Dielectric {
-            microfacets: self.roughness.microfacets(textures, &ctx.texture),
-            eta,
-        })
+        let microfacets = self.roughness.microfacets(textures, &ctx.texture);
+        if self.facets.are_plain() {
+            return BsdfKind::Dielectric(Dielectric { microfacets, eta });
+        }
+        BsdfKind::Facetted(Facetted::Dielectric(Dielectric { microfacets: self.facets.of(microfacets), eta }))
     }
 }

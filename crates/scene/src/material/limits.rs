@@ -34,16 +34,17 @@ pub(super) fn albedo(p: &mut Parameters<'_, '_>, name: &'static str, default: f3
     texture
 }
 
-/// Warns if two reflectances of one surface sum to more than 1 at some wavelength.
+/// Warns if two reflectances of one surface sum to more than 1 in some band: single wavelengths of saturated colours may,
+/// and are scaled without a word.
 pub(super) fn sum_of_albedos(
     p: &mut Parameters<'_, '_>,
     [a, b]: [&'static str; 2],
     textures: [SpectrumTexture; 2],
 ) {
     let [Some(first), Some(second)] = textures.map(SpectrumTexture::constant) else { return };
-    let tables = &p.context.spectra;
-    let at = |spectrum: Spectrum, nm| spectrum.at(tables, nm).clamp(0.0, 1.0);
-    let sum = wavelengths().map(|nm| at(first, nm) + at(second, nm)).fold(0.0, f32::max);
+    let bands = |spectrum: Spectrum| spectrum.bands().rgb().map(|value| value.clamp(0.0, 1.0));
+    let sums = bands(first).into_iter().zip(bands(second)).map(|(a, b)| a + b);
+    let sum = sums.fold(0.0, f32::max);
     if sum > 1.0 + ROUNDING {
         let span = if p.has(b) { p.span_of(b) } else { p.span_of(a) };
         let message =

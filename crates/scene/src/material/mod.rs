@@ -9,6 +9,7 @@ mod materials;
 
 mod bump;
 mod coat;
+mod facet_options;
 mod index;
 mod limits;
 mod metal;
@@ -26,6 +27,7 @@ mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
 mod mix;
+mod principled;
 mod thin_dielectric;
 
 #[cfg(test)]
@@ -44,12 +46,14 @@ pub use context::MaterialContext;
 pub use dielectric::DielectricMaterial;
 pub use diffuse::DiffuseMaterial;
 pub use diffuse_transmission::DiffuseTransmissionMaterial;
+pub use facet_options::FacetOptions;
 pub use index::RefractiveIndex;
 pub use materials::{MaterialId, Materials};
 pub use metal::Metal;
 pub use mix::MixMaterial;
 pub use normal_map::{NormalMap, NormalMapId};
 pub use perturbation::Perturbation;
+pub use principled::PrincipledMaterial;
 pub use roughness::{Roughness, RoughnessScale};
 pub use thin_dielectric::ThinDielectricMaterial;
 
@@ -77,6 +81,8 @@ pub enum Material {
     ThinDielectric(ThinDielectricMaterial),
     /// A sheet that light passes.
     DiffuseTransmission(DiffuseTransmissionMaterial),
+    /// Metal or a coated base, as in glTF.
+    Principled(PrincipledMaterial),
     /// A model of the literature.
     Classic(ClassicMaterial),
     /// One of two others.
@@ -133,6 +139,11 @@ pub const MATERIALS: &[MaterialSpec] = &[
         doc: "A thin sheet that scatters light to both sides.",
         parameters: DiffuseTransmissionMaterial::PARAMETERS,
     },
+    MaterialSpec {
+        name: "principled",
+        doc: "The metallic-roughness material of glTF 2.0, with all bounces.",
+        parameters: PrincipledMaterial::PARAMETERS,
+    },
     classic::MATERIALS[0],
     classic::MATERIALS[1],
     classic::MATERIALS[2],
@@ -143,6 +154,7 @@ pub const MATERIALS: &[MaterialSpec] = &[
     classic::MATERIALS[7],
     classic::MATERIALS[8],
     classic::MATERIALS[9],
+    classic::MATERIALS[10],
     MaterialSpec {
         name: "mix",
         doc: "One of two materials at each point, in a given proportion.",
@@ -181,6 +193,7 @@ impl Material {
             "diffusetransmission" => {
                 Self::DiffuseTransmission(DiffuseTransmissionMaterial::build(p, materials))
             }
+            "principled" => Self::Principled(PrincipledMaterial::build(p, materials)),
             "mix" => Self::Mix(MixMaterial::build(p, named)?),
             "interface" | "none" | "" => Self::Interface,
             other => {
@@ -206,6 +219,7 @@ impl Material {
             Self::Dielectric(material) => material.bsdf(textures, ctx, lambda),
             Self::ThinDielectric(material) => material.bsdf(textures, lambda),
             Self::DiffuseTransmission(material) => material.bsdf(textures, ctx, lambda),
+            Self::Principled(material) => material.bsdf(textures, ctx, lambda),
             Self::Classic(material) => BsdfKind::Classic(material.bsdf(textures, ctx, lambda)),
             Self::Mix(_) | Self::Interface => return None,
         };
@@ -223,6 +237,7 @@ impl Material {
             Self::Dielectric(material) => Some(&material.perturbation),
             Self::ThinDielectric(material) => Some(&material.perturbation),
             Self::DiffuseTransmission(material) => Some(&material.perturbation),
+            Self::Principled(material) => Some(&material.perturbation),
             Self::Classic(material) => Some(&material.perturbation),
             Self::Mix(_) | Self::Interface => None,
         }

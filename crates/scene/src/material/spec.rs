@@ -2,7 +2,7 @@
 
 use crate::parameters::ParameterSpec;
 
-const fn spec(
+pub(super) const fn spec(
     name: &'static str,
     kind: &'static str,
     default: &'static str,

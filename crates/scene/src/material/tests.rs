@@ -158,6 +158,7 @@ fn documented_parameters_are_the_known_ones() {
                 "integer" => Value::Integers(vec![3]),
                 "float[]" => Value::Floats(vec![-1.0, -1.0, 1.0, 20.0]),
                 _ if parameter.name == "strength" => floats(0.5),
+                _ if matches!((spec.name, parameter.name), ("smoothcoat", "eta") | (_, "ior")) => floats(1.4),
                 _ if parameter.name == "reflectance" && parameter.default.is_empty() => continue,
                 _ => floats(0.3),
             };

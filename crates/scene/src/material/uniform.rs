@@ -25,6 +25,11 @@ impl Material {
             Self::DiffuseTransmission(material) => {
                 material.reflectance.constant().is_some() && material.transmittance.constant().is_some()
             }
+            Self::Principled(material) => {
+                material.base_color.constant().is_some()
+                    && material.metallic.constant().is_some()
+                    && material.roughness.constant().is_some()
+            }
             Self::Classic(material) => material.is_uniform(),
             Self::Mix(mix) => {
                 mix.amount.constant().is_some()

@@ -63,6 +63,9 @@ pub(in crate::bsdf) fn configurations() -> Vec<Configuration> {
         ashikhmin_shirley("Ashikhmin-Shirley", 100.0, 100.0),
         ashikhmin_shirley("Ashikhmin-Shirley, brushed", 10.0, 1000.0),
         ashikhmin_shirley("Ashikhmin-Shirley, broad", 0.0, 0.0),
+        smooth_coat("smooth coat", KD, 1.5),
+        smooth_coat("smooth coat, white", Sampled::ONE, 1.5).lossless(),
+        smooth_coat("no coat, white", Sampled::ONE, 1.0).lossless(),
     ]
 }
 
@@ -182,10 +185,9 @@ fn ashikhmin_shirley(name: &'static str, exponent_u: f32, exponent_v: f32) -> Co
         .with("vexponent", &[exponent_v])
 }
 
-impl Configuration {
-    /// With a parameter that is a word.
-    fn named(mut self, name: &'static str, word: &str) -> Self {
-        self.parameters.push((name, word.to_owned()));
-        self
-    }
+fn smooth_coat(name: &'static str, reflectance: Sampled, eta: f32) -> Configuration {
+    let kind = BsdfKind::Classic(Classic::SmoothCoat(SmoothCoat::new(reflectance, eta)));
+    Configuration::new(name, "smoothcoat", kind)
+        .with("reflectance", &reflectance.to_array())
+        .with("eta", &[eta])
 }

@@ -16,10 +16,10 @@ use crate::bsdf::{BsdfSample, Lobes, TransportMode};
 
 /// How much each lobe matters, without unit: about its albedo.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Shares {
-    pub(super) diffuse: f32,
-    pub(super) glossy: f32,
-    pub(super) mirror: f32,
+pub(in crate::bsdf) struct Shares {
+    pub(in crate::bsdf) diffuse: f32,
+    pub(in crate::bsdf) glossy: f32,
+    pub(in crate::bsdf) mirror: f32,
 }
 
 impl Shares {
@@ -41,7 +41,7 @@ impl Shares {
 
 /// A model as a sum of lobes. All directions are above the surface; those of `glossy_pdf` and `sample_glossy` are `wo`
 /// and `wi` of the path, those of `diffuse` and `glossy` where light goes `to` and comes `from`.
-pub(super) trait Lobed {
+pub(in crate::bsdf) trait Lobed {
     /// f of the diffuse-like lobe in 1/sr.
     fn diffuse(&self, _to: Vector3, _from: Vector3) -> Sampled {
         Sampled::ZERO
@@ -77,7 +77,7 @@ pub(super) trait Lobed {
 }
 
 /// The lobes present.
-pub(super) fn lobes(model: &impl Lobed) -> Lobes {
+pub(in crate::bsdf) fn lobes(model: &impl Lobed) -> Lobes {
     let shares = model.shares(Vector3::new(0.0, 0.0, 1.0));
     let present = |share: f32, lobe| if share > 0.0 { lobe } else { Lobes::NONE };
     present(shares.diffuse, Lobes::DIFFUSE_REFLECT)
@@ -118,7 +118,7 @@ fn parts(
 }
 
 /// f in 1/sr.
-pub(super) fn eval(
+pub(in crate::bsdf) fn eval(
     model: &impl Lobed,
     wo: Vector3,
     wi: Vector3,
@@ -131,7 +131,7 @@ pub(super) fn eval(
 }
 
 /// Density of [`sample`] in 1/sr.
-pub(super) fn pdf(model: &impl Lobed, wo: Vector3, wi: Vector3, lobes: Lobes) -> f32 {
+pub(in crate::bsdf) fn pdf(model: &impl Lobed, wo: Vector3, wi: Vector3, lobes: Lobes) -> f32 {
     let Some((wo, wi)) = above(wo, wi) else { return 0.0 };
     mixture_pdf(model, wo, wi, model.shares(wo).among(lobes))
 }
@@ -143,7 +143,7 @@ fn mixture_pdf(model: &impl Lobed, wo: Vector3, wi: Vector3, shares: Shares) -> 
 }
 
 /// A direction of one of the wanted lobes.
-pub(super) fn sample(
+pub(in crate::bsdf) fn sample(
     model: &impl Lobed,
     wo: Vector3,
     u_component: f32,

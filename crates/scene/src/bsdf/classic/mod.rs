@@ -5,7 +5,7 @@
 //! made of stay as quick as without them. What they share is in [`lobed`]: one-sample mixtures of the lobes' densities.
 //! Which laws a model breaks is said in its file and stated in the [catalogue](super::catalogue) and asserted in tests.
 
-mod lobed;
+pub(super) mod lobed;
 mod powers;
 
 mod ashikhmin_shirley;
@@ -15,6 +15,7 @@ mod oren_nayar;
 mod phong;
 mod poulin_fournier;
 mod schlick;
+mod smooth_coat;
 mod v_groove;
 mod ward;
 
@@ -35,6 +36,7 @@ pub use oren_nayar::{OrenNayar, OrenNayarForm};
 pub use phong::{Phong, PhongForm};
 pub use poulin_fournier::PoulinFournier;
 pub use schlick::{Schlick, SchlickForm, SchlickWeights};
+pub use smooth_coat::SmoothCoat;
 pub use v_groove::{FacetDistribution, FacetFresnel, VGroove};
 pub use ward::{Ward, WardForm};
 
@@ -62,6 +64,8 @@ pub enum Classic {
     Lafortune(Lafortune),
     /// Ashikhmin and Shirley 2000.
     AshikhminShirley(AshikhminShirley),
+    /// Orchard 1969.
+    SmoothCoat(SmoothCoat),
 }
 
 /// One expression for each model.
@@ -77,6 +81,7 @@ macro_rules! each {
             Classic::OrenNayar($model) => $body,
             Classic::Lafortune($model) => $body,
             Classic::AshikhminShirley($model) => $body,
+            Classic::SmoothCoat($model) => $body,
         }
     };
 }
@@ -123,7 +128,7 @@ impl Classic {
             Self::PoulinFournier(model) => Self::PoulinFournier(model.regularized()),
             Self::Ward(model) => Self::Ward(model.regularized()),
             Self::AshikhminShirley(model) => Self::AshikhminShirley(model.regularized()),
-            Self::Schlick(_) | Self::OrenNayar(_) | Self::Lafortune(_) => self,
+            Self::Schlick(_) | Self::OrenNayar(_) | Self::Lafortune(_) | Self::SmoothCoat(_) => self,
         }
     }
 

@@ -418,6 +418,24 @@ fn schlicks_printed_form_makes_light() {
     check(albedo_at(&schlick(0.5, 1.0, SchlickForm::Printed), 89.0), 28.5, 0.3);
 }
 
+/// A smooth coat in closed form reflects what walks between coat and base find.
+#[test]
+fn a_smooth_coat_is_what_walks_find() {
+    let closed = white(Classic::SmoothCoat(SmoothCoat::new(RED, 1.5)));
+    let base = Base::Diffuse(Diffuse { reflectance: RED });
+    let thin = Layered { thickness: 1e-6, max_depth: 100, ..coated(glass(0.0, 0.0, 1.5), base) };
+    for angle in [0.0, 60.0, 80.0] {
+        let wo = direction(angle, 0.3);
+        let walks =
+            crate::bsdf::laws::albedo(&BsdfKind::Layered(thin), wo, TransportMode::Radiance, Lobes::ALL);
+        let exact = crate::bsdf::laws::albedo(&closed, wo, TransportMode::Radiance, Lobes::ALL);
+        for i in 0..4 {
+            let noise = 4.5 * walks[i].standard_error.hypot(exact[i].standard_error);
+            check(exact[i].value, walks[i].value, noise + 2e-3);
+        }
+    }
+}
+
 /// The paths that this model takes are wide after regularization, and stay as they are where they were.
 #[test]
 fn narrow_highlights_are_widened() {
@@ -430,7 +448,9 @@ fn narrow_highlights_are_widened() {
         assert!(after >= before * 0.999, "{}: {before} {after}", row.name);
         let is_fixed = matches!(
             row.kind,
-            BsdfKind::Classic(Classic::Schlick(_) | Classic::Lafortune(_) | Classic::OrenNayar(_))
+            BsdfKind::Classic(
+                Classic::Schlick(_) | Classic::Lafortune(_) | Classic::OrenNayar(_) | Classic::SmoothCoat(_)
+            )
         );
         assert!(is_fixed || after >= 0.099, "{}: {after}", row.name);
     }

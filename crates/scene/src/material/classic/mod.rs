@@ -9,6 +9,7 @@ mod oren_nayar;
 mod phong;
 mod poulin_fournier;
 mod schlick;
+mod smooth_coat;
 mod v_groove;
 mod ward;
 
@@ -22,6 +23,7 @@ pub use oren_nayar::OrenNayarMaterial;
 pub use phong::PhongMaterial;
 pub use poulin_fournier::PoulinFournierMaterial;
 pub use schlick::SchlickMaterial;
+pub use smooth_coat::SmoothCoatMaterial;
 pub use v_groove::VGrooveMaterial;
 pub use ward::WardMaterial;
 
@@ -62,6 +64,8 @@ pub enum ClassicModel {
     Lafortune(LafortuneMaterial),
     /// A coat over a diffuse base.
     AshikhminShirley(AshikhminShirleyMaterial),
+    /// A smooth coat over a diffuse base.
+    SmoothCoat(SmoothCoatMaterial),
 }
 
 /// One expression for each model.
@@ -77,12 +81,13 @@ macro_rules! each {
             ClassicModel::OrenNayar($model) => $body,
             ClassicModel::Lafortune($model) => $body,
             ClassicModel::AshikhminShirley($model) => $body,
+            ClassicModel::SmoothCoat($model) => $body,
         }
     };
 }
 
 /// Their part of [`super::MATERIALS`].
-pub(super) const MATERIALS: [MaterialSpec; 10] = [
+pub(super) const MATERIALS: [MaterialSpec; 11] = [
     MaterialSpec {
         name: "phong",
         doc: "Diffuse with a highlight around the mirror direction (Phong 1975, Lewis 1993).",
@@ -133,6 +138,11 @@ pub(super) const MATERIALS: [MaterialSpec; 10] = [
         doc: "Diffuse under a polished, perhaps brushed coat (Ashikhmin and Shirley 2000).",
         parameters: AshikhminShirleyMaterial::PARAMETERS,
     },
+    MaterialSpec {
+        name: "smoothcoat",
+        doc: "Diffuse under a smooth clear coat, with all bounces in closed form (Orchard 1969).",
+        parameters: SmoothCoatMaterial::PARAMETERS,
+    },
 ];
 
 impl ClassicMaterial {
@@ -151,6 +161,7 @@ impl ClassicMaterial {
             "orennayar" => ClassicModel::OrenNayar(OrenNayarMaterial::build(p)),
             "lafortune" => ClassicModel::Lafortune(LafortuneMaterial::build(p)),
             "ashikhminshirley" => ClassicModel::AshikhminShirley(AshikhminShirleyMaterial::build(p)),
+            "smoothcoat" => ClassicModel::SmoothCoat(SmoothCoatMaterial::build(p)),
             _ => return None,
         };
         Some(Self { model, perturbation: Perturbation::build(p, materials) })

@@ -1,0 +1,61 @@
+//! The metallic-roughness material of glTF 2.0.
+
+use etendue_spectrum::Wavelengths;
+
+use super::{MaterialContext, Materials, Perturbation, limits, spec};
+use crate::bsdf::facetted::Principled;
+use crate::bsdf::{BsdfKind, Facetted};
+use crate::parameters::{ParameterSpec, Parameters};
+use crate::texture::{FloatTexture, SpectrumTexture, Textures};
+
+/// Parameters of `principled`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipledMaterial {
+    /// Colour of the diffuse base, or of the metal.
+    pub base_color: SpectrumTexture,
+    /// Share of metal.
+    pub metallic: FloatTexture,
+    /// Square root of alpha.
+    pub roughness: FloatTexture,
+    /// Index of the coat.
+    pub ior: f32,
+    /// Relief.
+    pub perturbation: Perturbation,
+}
+
+const INDICES: [f32; 2] = [1.0, 4.0];
+
+impl PrincipledMaterial {
+    /// What scene files may say.
+    pub const PARAMETERS: &'static [ParameterSpec] = &[
+        spec::spec(
+            "basecolor",
+            "spectrum texture",
+            "0.8",
+            "Albedo of the base, or reflectance of the metal.",
+        ),
+        spec::spec("metallic", "float texture", "0", "Share of metal, in [0, 1]."),
+        spec::spec("roughness", "float texture", "0.5", "Square root of the alpha of the facets, in [0, 1]."),
+        spec::spec("ior", "float", "1.5", "Index of refraction of the coat over what is not metal, 1 to 4."),
+        spec::DISPLACEMENT,
+        spec::NORMAL_MAP,
+    ];
+
+    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
+        Self {
+            base_color: limits::albedo(p, "basecolor", 0.8),
+            metallic: limits::float_within(p, "metallic", 0.0, limits::SHARES),
+            roughness: limits::float_within(p, "roughness", 0.5, limits::SHARES),
+            ior: limits::constant_within(p, "ior", 1.5, INDICES),
+            perturbation: Perturbation::build(p, materials),
+        }
+    }
+
+    #[inline]
+    pub(super) fn bsdf(&self, textures: &Textures, ctx: &MaterialContext, lambda: &Wavelengths) -> BsdfKind {
+        let share = |texture| limits::clamp(textures.eval_float(texture, &ctx.texture), limits::SHARES);
+        let base = textures.eval_spectrum(self.base_color, &ctx.texture, lambda).clamp(0.0, 1.0);
+        let (metallic, roughness) = (share(self.metallic), share(self.roughness));
+        BsdfKind::Facetted(Facetted::Principled(Principled::new(base, metallic, roughness, self.ior)))
+    }
+}
