@@ -191,6 +191,13 @@ impl Scene {
         (hash >> 40) as f32 / (1_u64 << 24) as f32 <= alpha
     }
 
+    /// True if the surface at a hit is that of a light.
+    #[inline]
+    #[must_use]
+    pub fn emits(&self, hit: &Hit) -> bool {
+        self.attributes[hit.geometry.0 as usize].lights.is_some()
+    }
+
     /// The surface at a hit of the ray, whose direction has length 1.
     #[inline]
     #[must_use]

@@ -285,8 +285,16 @@ impl<'s> Walk<'s> {
                 self.add_surroundings(scene, path);
                 break;
             };
+            // All that may be left to find is light that this very surface sends.
+            let is_last = self.depth > 0 && self.depth == self.settings.max_depth && !scene.has_passable;
+            if is_last && !scene.emits(&hit) {
+                break;
+            }
             let surface = scene.surface(&self.ray, &hit);
             self.add_emission(scene, &surface, path);
+            if is_last {
+                break;
+            }
             let Some(mut bsdf) = scene.bsdf(&surface, path.lambda) else {
                 // Light passes as if the surface were not there.
                 self.ray = surface.spawn_ray(self.ray.direction);
