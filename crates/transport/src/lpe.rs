@@ -18,7 +18,8 @@ use regex_automata::util::primitives::StateID;
 use regex_automata::util::{start, syntax};
 use regex_automata::{Anchored, MatchKind};
 
-/// Glossy events of a microfacet width `alpha` below this count as `S` where an expression has no `G`.
+/// Glossy events of a microfacet width `alpha` below this count as `S` where an expression has no `G`, unless a scene says
+/// otherwise.
 pub const SHARP_ALPHA: f32 = 0.1;
 
 /// The most expressions that one render can have.
@@ -43,10 +44,10 @@ pub enum Event {
 }
 
 impl Event {
-    /// The event of a glossy lobe of that microfacet width.
+    /// The event of a glossy lobe of that microfacet width, where those narrower than `sharp_alpha` are sharp.
     #[must_use]
-    pub fn glossy(alpha: f32) -> Self {
-        if alpha < SHARP_ALPHA { Self::SharpGlossy } else { Self::WideGlossy }
+    pub fn glossy(alpha: f32, sharp_alpha: f32) -> Self {
+        if alpha < sharp_alpha { Self::SharpGlossy } else { Self::WideGlossy }
     }
 
     const fn byte(self) -> u8 {

@@ -20,7 +20,7 @@ use etendue_scene::{Film, Scene};
 use etendue_spectrum::{Sampled, Wavelengths};
 
 use crate::integrator::{Control, Integrator, PassEnd, Passes};
-use crate::lpe::{Event, LayerRecorder, PathExpressions};
+use crate::lpe::{Event, LayerRecorder, PathExpressions, SHARP_ALPHA};
 use crate::path::camera_pass::{CameraPass, CameraPath, Tracer, WavelengthMode};
 use crate::path::direct::{Candidate, choose_light, visibility};
 use crate::path::mis::power_heuristic;
@@ -55,6 +55,8 @@ pub struct PathSettings {
     pub light_samples: u32,
     /// Widens narrow lobes after the first wide scattering event: less noise, biased.
     pub regularize: bool,
+    /// Glossy events narrower than this count as specular in path expressions without `G` (SPEC LPE-5).
+    pub sharp_alpha: f32,
     /// How lights are found.
     pub lights: LightStrategy,
     /// How wavelengths are chosen.
@@ -71,6 +73,7 @@ impl Default for PathSettings {
             splitting: 1,
             light_samples: 1,
             regularize: false,
+            sharp_alpha: SHARP_ALPHA,
             lights: LightStrategy::default(),
             wavelengths: WavelengthMode::default(),
         }
@@ -130,6 +133,13 @@ impl PathSettings {
             doc: "widen narrow lobes after the first wide one: less noise, biased",
         },
         ParameterSpec {
+            name: "sharpalpha",
+            kind: "float",
+            default: "0.1",
+            unit: "",
+            doc: "width of microfacets below which glossy events count as S in path expressions without G, else as D",
+        },
+        ParameterSpec {
             name: "lights",
             kind: "string",
             default: "both",
@@ -162,6 +172,7 @@ impl PathSettings {
         let splitting = p.count("splitting", default.splitting).max(1);
         let light_samples = p.count("lightsamples", splitting).max(1);
         let regularize = p.bool("regularize", false);
+        let sharp_alpha = p.float("sharpalpha", default.sharp_alpha);
         let strategies = [
             ("both", LightStrategy::Both),
             ("lights", LightStrategy::Lights),
@@ -184,6 +195,7 @@ impl PathSettings {
             splitting,
             light_samples,
             regularize,
+            sharp_alpha,
             lights,
             wavelengths,
         }
@@ -516,7 +528,7 @@ impl<'s> Walk<'s> {
             through * (f * weighted)
         };
         let (glossy, diffuse) = (through_lobes(Lobes::GLOSSY), through_lobes(Lobes::DIFFUSE));
-        path.layers.emit_through(Event::glossy(bsdf.glossy_roughness()), glossy);
+        path.layers.emit_through(Event::glossy(bsdf.glossy_roughness(), self.settings.sharp_alpha), glossy);
         path.layers.emit_through(Event::Diffuse, diffuse);
     }
 
@@ -535,7 +547,7 @@ impl<'s> Walk<'s> {
         self.has_scattered_widely |= pdf_w.is_some();
         self.last = Some(LastScattering { reference: surface.reference(), pdf_w });
         if !layers.is_idle() {
-            layers.scatter(event_of(sample));
+            layers.scatter(event_of(sample, self.settings.sharp_alpha));
         }
     }
 
@@ -557,11 +569,11 @@ impl<'s> Walk<'s> {
 }
 
 /// The letter of a scattering event.
-fn event_of(sample: &BsdfSample) -> Event {
+fn event_of(sample: &BsdfSample, sharp_alpha: f32) -> Event {
     if sample.is_specular() {
         Event::Specular
     } else if sample.lobe.is_glossy() {
-        Event::glossy(sample.roughness)
+        Event::glossy(sample.roughness, sharp_alpha)
     } else {
         Event::Diffuse
     }

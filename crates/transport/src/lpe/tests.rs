@@ -53,8 +53,8 @@ fn glossy_events() {
     check("L(S|G)E", &["S", "s", "d"], &["D"]);
     check("L[DG]E", &["D", "s", "d"], &["S"]);
     check("L(S|D)*E", &["", "sdSD", "ddss"], &["V"]);
-    assert_eq!(Event::glossy(0.05), Event::SharpGlossy);
-    assert_eq!(Event::glossy(0.5), Event::WideGlossy);
+    assert_eq!(Event::glossy(0.05, SHARP_ALPHA), Event::SharpGlossy);
+    assert_eq!(Event::glossy(0.5, SHARP_ALPHA), Event::WideGlossy);
 }
 
 /// Slips are refused with a reason.

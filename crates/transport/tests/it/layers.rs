@@ -148,3 +148,40 @@ fn direct_layer_is_direct_light() {
     expect_equal_pixels("LDE", &layer(&film, "direct"), &luminance(&render_passes(&scene(1), 0..8)), 1e-5);
     assert!(layer(&film, "indirect").iter().sum::<f64>() > 0.0);
 }
+
+/// A disk of a material under a white sky, seen from above.
+fn disk_layers(name: &str, material: &str, integrator: &str) -> Film {
+    let world = format!("LightSource \"infinite\" {} Material {material} Shape \"disk\"", lit("L", 1.0));
+    let camera =
+        "LookAt 0 0 2  0 0 0  0 1 0 Camera \"orthographic\" \"float screenwindow\" [-0.5 0.5 -0.5 0.5]";
+    let setup = Setup { size: [16, 16], integrator, camera, world: &world, ..Setup::default() };
+    render_layers(&setup.scene(name), 0..512, &[("specular", "LSE"), ("diffuse", "LDE")])
+}
+
+/// LPE-5: of a coated surface, what the coat reflects has the letter S, and what comes back through it the letter D: as much
+/// of each as there is of each lobe. The coat reflects 4 % at normal incidence.
+#[test]
+fn letters_come_from_the_sampled_component() {
+    let material =
+        format!("\"coateddiffuse\" {} \"float roughness\" 0 \"float eta\" 1.5", flat("reflectance", 0.5));
+    let film = disk_layers("coat", &material, "");
+    let (specular, diffuse) = (layer(&film, "specular"), layer(&film, "diffuse"));
+    expect_mean("the coat", &specular.iter().copied().collect(), 0.04, 0.08);
+    let sum: Vec<f64> = specular.iter().zip(&diffuse).map(|(a, b)| a + b).collect();
+    expect_equal_pixels("coat and base", &sum, &luminance(&film), 1e-5);
+}
+
+/// LPE-5: whether a glossy lobe counts as S or as D is a matter of width, and scenes may set which.
+#[test]
+fn scenes_say_what_is_sharp() {
+    let material = "\"conductor\" \"float roughness\" 0.2 \"bool remaproughness\" false";
+    for (integrator, name, other) in [
+        ("\"float sharpalpha\" 0.3", "specular", "diffuse"),
+        ("\"float sharpalpha\" 0.15", "diffuse", "specular"),
+        ("", "diffuse", "specular"),
+    ] {
+        let film = disk_layers("metal", material, integrator);
+        expect_equal_pixels(name, &layer(&film, name), &luminance(&film), 1e-5);
+        assert!(layer(&film, other).iter().all(|value| *value == 0.0));
+    }
+}
