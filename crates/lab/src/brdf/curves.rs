@@ -7,7 +7,7 @@ use etendue_math::{Frame, Point2, Rng, Vector3, hash64};
 use etendue_scene::bsdf::classic::{FacetFresnel, VGroove};
 use etendue_scene::bsdf::fresnel::{fresnel_conductor, fresnel_dielectric, fresnel_schlick};
 use etendue_scene::bsdf::laws::{albedo, direction};
-use etendue_scene::bsdf::{BsdfKind, Classic, Lobes, TransportMode};
+use etendue_scene::bsdf::{BsdfKind, Classic, Facetted, Lobes, TransportMode};
 use etendue_spectrum::Sampled;
 use rayon::prelude::*;
 
@@ -180,6 +180,8 @@ fn interface(kind: &BsdfKind) -> Option<Interface> {
             Some(Interface::Conductor(*eta, *k))
         }
         BsdfKind::Dielectric(bsdf) => Some(Interface::Dielectric(bsdf.eta)),
+        BsdfKind::Facetted(Facetted::Conductor(bsdf)) => Some(Interface::Conductor(bsdf.eta, bsdf.k)),
+        BsdfKind::Facetted(Facetted::Dielectric(bsdf)) => Some(Interface::Dielectric(bsdf.eta)),
         BsdfKind::ThinDielectric(bsdf) => Some(Interface::Dielectric(bsdf.eta)),
         BsdfKind::Layered(bsdf) => Some(Interface::Dielectric(bsdf.coat.eta)),
         _ => None,
