@@ -6,6 +6,7 @@
 //! rectangles are sampled uniformly in solid angle, others by a density that is bilinear in the areas at the corners.
 
 mod flat;
+mod intersect;
 #[cfg(test)]
 mod tests;
 
@@ -13,8 +14,11 @@ use etendue_math::warp::SphericalRectangle;
 use etendue_math::{Bounds3, Frame, Normal3, Point2, Point3, Ray, Transform, Vector3};
 use glam::DVec3;
 
+pub(crate) use flat::{entity_of, half_reference, resolve};
+use intersect::intersect;
+
 use super::{Candidate, Candidates, LocalSurface, weingarten};
-use crate::bvh::{PrimitiveRef, intersect_triangle};
+use crate::bvh::intersect_triangle;
 use crate::double;
 use crate::hit::{ShapeSample, SurfaceDerivatives, SurfacePoint};
 use crate::mesh::{BilinearMesh, heap};
@@ -30,31 +34,6 @@ pub(crate) struct Patches {
     planes: Option<Vec<Normal3>>,
     /// Largest magnitude of a coordinate.
     size: f64,
-}
-
-/// Marks a triangle of the hierarchy as half of a patch, in the number of its entity.
-const HALF: u32 = 1 << 31;
-
-/// How the hierarchy names a half of a patch.
-pub(crate) const fn half_reference(geometry: u32, half: u32) -> PrimitiveRef {
-    assert!(geometry < HALF, "too many shapes");
-    PrimitiveRef { geometry: geometry | HALF, primitive: half }
-}
-
-/// The entity of a triangle of the hierarchy.
-#[inline(always)]
-pub(crate) const fn entity_of(triangle: PrimitiveRef) -> usize {
-    (triangle.geometry & !HALF) as usize
-}
-
-/// The primitive that a ray meets and where on it, from the weights of the corners of a triangle of the hierarchy.
-#[inline(always)]
-pub(crate) fn resolve(triangle: PrimitiveRef, b: [f32; 2]) -> (PrimitiveRef, [f32; 2]) {
-    if triangle.geometry & HALF == 0 {
-        return (triangle, b);
-    }
-    let PrimitiveRef { geometry, primitive: half } = triangle;
-    (PrimitiveRef { geometry: geometry & !HALF, primitive: half / 2 }, flat::position(half % 2, b))
 }
 
 /// Solid angles in which rectangles are sampled by direction, in steradians.
@@ -455,58 +434,4 @@ fn sample_bilinear(w: &[f64; 4], u: [f64; 2]) -> [f64; 2] {
 fn bilinear_density(w: &[f64; 4], [u, v]: [f64; 2]) -> f64 {
     let value = (1.0 - v) * ((1.0 - u) * w[0] + u * w[1]) + v * ((1.0 - u) * w[2] + u * w[3]);
     4.0 * value / (w[0] + w[1] + w[2] + w[3])
-}
-
-fn intersect(c: &Corners, origin: DVec3, direction: DVec3) -> Candidates {
-    let [p00, p10, p01, p11] = *c;
-    let qa = (p10 - p00).cross(p01 - p11).dot(direction);
-    let qc = (p00 - origin).cross(direction).dot(p01 - p00);
-    let qb = (p10 - origin).cross(direction).dot(p11 - p10) - (qa + qc);
-    let mut hits = [None; 2];
-    let roots = quadratic(qa, qb, qc);
-    for (slot, u) in roots.into_iter().enumerate() {
-        hits[slot] = u.and_then(|u| on_line(c, u, origin, direction));
-    }
-    if let [Some(a), Some(b)] = hits
-        && b.t < a.t
-    {
-        hits = [Some(b), Some(a)];
-    }
-    hits
-}
-
-/// Slack in u and v: neighbours of one edge overlap by it instead of leaving a gap.
-const SLACK: f64 = 1e-10;
-
-/// The hit on the line of constant u, if it lies on the patch and ahead.
-fn on_line(c: &Corners, u: f64, origin: DVec3, direction: DVec3) -> Option<Candidate> {
-    if !(-SLACK..=1.0 + SLACK).contains(&u) {
-        return None;
-    }
-    let u = u.clamp(0.0, 1.0);
-    let start = c[0].lerp(c[1], u);
-    let line = c[2].lerp(c[3], u) - start;
-    let offset = start - origin;
-    let normal = direction.cross(line);
-    let length_squared = normal.length_squared();
-    if length_squared == 0.0 {
-        return None;
-    }
-    let v = offset.cross(direction).dot(normal) / length_squared;
-    let t = offset.cross(line).dot(normal) / length_squared;
-    ((-SLACK..=1.0 + SLACK).contains(&v) && t > 0.0).then(|| Candidate { t, u, v: v.clamp(0.0, 1.0) })
-}
-
-/// Roots of a x² + b x + c; the second is absent where the equation is linear.
-fn quadratic(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
-    // The leading coefficient of a planar patch is rounding noise and then has a root far away.
-    if a == 0.0 {
-        return [(b != 0.0).then(|| -c / b), None];
-    }
-    let discriminant = b * b - 4.0 * a * c;
-    if discriminant < 0.0 || !discriminant.is_finite() {
-        return [None; 2];
-    }
-    let q = -0.5 * (b + discriminant.sqrt().copysign(b));
-    [Some(q / a), (q != 0.0).then(|| c / q)]
 }

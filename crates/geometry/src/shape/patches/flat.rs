@@ -8,6 +8,32 @@ use etendue_math::Point3;
 use glam::DVec3;
 
 use super::Corners;
+use crate::bvh::PrimitiveRef;
+
+/// Marks a triangle of the hierarchy as half of a patch, in the number of its entity.
+const HALF: u32 = 1 << 31;
+
+/// How the hierarchy names a half of a patch.
+pub(crate) const fn half_reference(geometry: u32, half: u32) -> PrimitiveRef {
+    assert!(geometry < HALF, "too many shapes");
+    PrimitiveRef { geometry: geometry | HALF, primitive: half }
+}
+
+/// The entity of a triangle of the hierarchy.
+#[inline(always)]
+pub(crate) const fn entity_of(triangle: PrimitiveRef) -> usize {
+    (triangle.geometry & !HALF) as usize
+}
+
+/// The primitive that a ray meets and where on it, from the weights of the corners of a triangle of the hierarchy.
+#[inline(always)]
+pub(crate) fn resolve(triangle: PrimitiveRef, b: [f32; 2]) -> (PrimitiveRef, [f32; 2]) {
+    if triangle.geometry & HALF == 0 {
+        return (triangle, b);
+    }
+    let PrimitiveRef { geometry, primitive: half } = triangle;
+    (PrimitiveRef { geometry: geometry & !HALF, primitive: half / 2 }, position(half % 2, b))
+}
 
 /// Roundings of a corner, relative to the largest coordinate: of a transform and of what the file says.
 const ROUNDING: f64 = 8.0 * f32::EPSILON as f64;
