@@ -1,12 +1,12 @@
 //! The dielectric coat of `coateddiffuse` and `coatedconductor`, with the medium below it.
 
-use etendue_spectrum::{Spectrum, Wavelengths};
+use etendue_spectrum::Wavelengths;
 
-use super::MaterialContext;
 use super::index::RefractiveIndex;
 use super::roughness::{Roughness, RoughnessNames};
+use super::{MaterialContext, limits};
 use crate::bsdf::{Base, BsdfKind, Dielectric, Layered};
-use crate::parameters::{Parameters, SpectrumRole};
+use crate::parameters::Parameters;
 use crate::texture::{FloatTexture, SpectrumTexture, Textures};
 
 /// A coat and the medium between it and the base.
@@ -33,9 +33,9 @@ impl Coat {
         Self {
             eta: RefractiveIndex::build(p, eta, RefractiveIndex::GLASS),
             roughness: Roughness::build(p, roughness),
-            thickness: p.float_texture("thickness", 0.01),
-            g: p.float_texture("g", 0.0),
-            albedo: p.spectrum_texture("albedo", Spectrum::Constant(0.0), SpectrumRole::Albedo),
+            thickness: limits::float_within(p, "thickness", 0.01, [0.0, 1e6]),
+            g: limits::float_within(p, "g", 0.0, [-0.999, 0.999]),
+            albedo: limits::albedo(p, "albedo", 0.0),
             max_depth: Self::count(p, "maxdepth", 10),
             n_samples: Self::count(p, "nsamples", 1),
         }

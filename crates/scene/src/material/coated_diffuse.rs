@@ -1,12 +1,12 @@
 //! A diffuse surface under a clear coat: plastic, varnished wood, glazed pottery.
 
-use etendue_spectrum::{Spectrum, Wavelengths};
+use etendue_spectrum::Wavelengths;
 
 use super::coat::Coat;
 use super::roughness::RoughnessNames;
-use super::{MaterialContext, Materials, Perturbation, spec};
+use super::{MaterialContext, Materials, Perturbation, limits, spec};
 use crate::bsdf::{Base, BsdfKind, Diffuse};
-use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
+use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::{SpectrumTexture, Textures};
 
 /// Parameters of `coateddiffuse`.
@@ -46,7 +46,7 @@ impl CoatedDiffuseMaterial {
 
     pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         Self {
-            reflectance: p.spectrum_texture("reflectance", Spectrum::Constant(0.5), SpectrumRole::Albedo),
+            reflectance: limits::albedo(p, "reflectance", 0.5),
             coat: Coat::build(p, "eta", &RoughnessNames::PLAIN),
             perturbation: Perturbation::build(p, materials),
         }

@@ -1,10 +1,10 @@
 //! Ideal diffuse reflection: matte paint, paper, plaster.
 
-use etendue_spectrum::{Spectrum, Wavelengths};
+use etendue_spectrum::Wavelengths;
 
-use super::{MaterialContext, Materials, Perturbation, spec};
+use super::{MaterialContext, Materials, Perturbation, limits, spec};
 use crate::bsdf::{BsdfKind, Diffuse};
-use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
+use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::{SpectrumTexture, Textures};
 
 /// Parameters of `diffuse`.
@@ -23,7 +23,7 @@ impl DiffuseMaterial {
 
     pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         Self {
-            reflectance: p.spectrum_texture("reflectance", Spectrum::Constant(0.5), SpectrumRole::Albedo),
+            reflectance: limits::albedo(p, "reflectance", 0.5),
             perturbation: Perturbation::build(p, materials),
         }
     }

@@ -1,10 +1,10 @@
 //! A thin diffuse sheet that light passes: leaves, paper, lampshades.
 
-use etendue_spectrum::{Spectrum, Wavelengths};
+use etendue_spectrum::Wavelengths;
 
-use super::{MaterialContext, Materials, Perturbation, spec};
+use super::{MaterialContext, Materials, Perturbation, limits, spec};
 use crate::bsdf::{BsdfKind, DiffuseTransmission};
-use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
+use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::{SpectrumTexture, Textures};
 
 /// Parameters of `diffusetransmission`.
@@ -49,10 +49,9 @@ impl DiffuseTransmissionMaterial {
     ];
 
     pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
-        let default = Spectrum::Constant(0.25);
         Self {
-            reflectance: p.spectrum_texture("reflectance", default, SpectrumRole::Albedo),
-            transmittance: p.spectrum_texture("transmittance", default, SpectrumRole::Albedo),
+            reflectance: limits::albedo(p, "reflectance", 0.25),
+            transmittance: limits::albedo(p, "transmittance", 0.25),
             scale: p.float("scale", 1.0),
             perturbation: Perturbation::build(p, materials),
         }

@@ -17,7 +17,14 @@ impl RefractiveIndex {
     pub const VACUUM: Self = Self(Spectrum::Constant(1.0));
 
     pub(super) fn build(p: &mut Parameters<'_, '_>, name: &'static str, default: Self) -> Self {
-        p.spectrum(name, SpectrumRole::Unbounded).map_or(default, Self)
+        let Some(spectrum) = p.spectrum(name, SpectrumRole::Unbounded) else { return default };
+        if matches!(spectrum, Spectrum::Constant(eta) if eta <= 0.0) {
+            let span = p.span_of(name);
+            let message =
+                format!("\"{name}\" is an index of refraction, which must be positive; it is taken as 1");
+            p.diagnostics().warning(span, message);
+        }
+        Self(spectrum)
     }
 
     /// The index at the first wavelength. If the index varies, the other wavelengths would take other ways: they are

@@ -10,6 +10,8 @@ use crate::texture::{FloatTexture, SpectrumTexture, Textures};
 
 /// Exponents of highlights.
 pub(super) const EXPONENTS: [f32; 2] = [0.0, 1e6];
+/// Roughness, alpha or its square.
+pub(super) const ROUGHNESSES: [f32; 2] = [0.0, 10.0];
 /// Slopes of facets.
 pub(super) const SLOPES: [f32; 2] = [1e-3, 1.0];
 /// Parts of a whole.
@@ -20,8 +22,13 @@ const ROUNDING: f32 = 1e-3;
 
 /// A reflectance in [0, 1]: negative ones are errors, larger ones warnings.
 pub(super) fn albedo(p: &mut Parameters<'_, '_>, name: &'static str, default: f32) -> SpectrumTexture {
-    let texture = p.spectrum_texture(name, Spectrum::Constant(default), SpectrumRole::Albedo);
-    let Some(spectrum) = texture.constant() else { return texture };
+    albedo_opt(p, name).unwrap_or(grey(default))
+}
+
+/// The same, or `None` if it is not given.
+pub(super) fn albedo_opt(p: &mut Parameters<'_, '_>, name: &'static str) -> Option<SpectrumTexture> {
+    let texture = p.spectrum_texture_opt(name, SpectrumRole::Albedo)?;
+    let Some(spectrum) = texture.constant() else { return Some(texture) };
     let values = || wavelengths().map(|nm| spectrum.at(&p.context.spectra, nm));
     let (least, greatest) = (values().fold(f32::INFINITY, f32::min), values().fold(0.0, f32::max));
     let span = p.span_of(name);
@@ -31,7 +38,7 @@ pub(super) fn albedo(p: &mut Parameters<'_, '_>, name: &'static str, default: f3
         let message = format!("\"{name}\" is a reflectance above 1 ({greatest}); it is clamped to 1");
         p.diagnostics().warning(span, message);
     }
-    texture
+    Some(texture)
 }
 
 /// Warns if two reflectances of one surface sum to more than 1 in some band: single wavelengths of saturated colours may,

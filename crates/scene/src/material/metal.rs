@@ -2,7 +2,7 @@
 
 use etendue_spectrum::{Sampled, Spectrum, Wavelengths};
 
-use super::MaterialContext;
+use super::{MaterialContext, limits};
 use crate::parameters::{Parameters, SpectrumRole};
 use crate::texture::{SpectrumTexture, Textures};
 
@@ -29,7 +29,7 @@ pub(super) struct MetalNames {
 impl Metal {
     pub(super) fn build(p: &mut Parameters<'_, '_>, names: &MetalNames) -> Self {
         let has_index = p.has(names.eta) || p.has(names.k);
-        if let Some(reflectance) = p.spectrum_texture_opt("reflectance", SpectrumRole::Albedo) {
+        if let Some(reflectance) = limits::albedo_opt(p, "reflectance") {
             if has_index {
                 let span = p.span_of("reflectance");
                 let message =

@@ -1,5 +1,6 @@
 //! Roughness of an interface as scene files give it.
 
+use super::limits::{self, PerTangent};
 use crate::bsdf::microfacet::Microfacets;
 use crate::parameters::Parameters;
 use crate::texture::{FloatTexture, TextureContext, Textures};
@@ -51,9 +52,8 @@ impl Roughness {
     }
 
     pub(super) fn build(p: &mut Parameters<'_, '_>, names: &RoughnessNames) -> Self {
-        let both = p.float_texture(names.both, 0.0);
-        let u = p.float_texture_opt(names.u).unwrap_or(both);
-        let v = p.float_texture_opt(names.v).unwrap_or(both);
+        let PerTangent { u, v } =
+            PerTangent::build(p, [names.both, names.u, names.v], 0.0, limits::ROUGHNESSES);
         let scale =
             if p.bool("remaproughness", true) { RoughnessScale::Perceptual } else { RoughnessScale::Alpha };
         Self { u, v, scale }
