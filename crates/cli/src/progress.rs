@@ -70,7 +70,6 @@ impl CheckpointPlan {
 /// Watches a render.
 pub(crate) struct Watch {
     bar: ProgressBar,
-    started: Instant,
     deadline: Option<Instant>,
     checkpoint: Option<CheckpointPlan>,
     last_checkpoint: Mutex<Instant>,
@@ -119,7 +118,6 @@ impl Watch {
         let now = Instant::now();
         Self {
             bar,
-            started: now,
             // A time beyond what clocks count is no limit.
             deadline: time.and_then(|time| now.checked_add(time)),
             checkpoint,
@@ -144,12 +142,6 @@ impl Watch {
             closest: self.closest.load(Ordering::Relaxed),
             shadow: self.shadow.load(Ordering::Relaxed),
         }
-    }
-
-    /// Time since the start.
-    #[must_use]
-    pub(crate) fn elapsed(&self) -> Duration {
-        self.started.elapsed()
     }
 
     /// Ends the progress bar and keeps the last state.

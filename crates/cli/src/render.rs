@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use etendue::io::checkpoint::read_checkpoint;
 use etendue::scene::{Film, Scene};
@@ -13,8 +13,8 @@ use crate::args::{RenderArguments, WavelengthArgument};
 use crate::failure::{Failure, Result};
 use crate::load::{LoadedScene, Overrides, fingerprint, integrator_entity, load};
 use crate::progress::{CheckpointPlan, ShowProgress, Watch, catch_interruption, is_interrupted};
-use crate::stats::Statistics;
-use crate::{metadata, outputs, report};
+use crate::stats::{RenderClock, RenderTime, Statistics};
+use crate::{metadata, outputs, report, stats};
 
 /// A render, as meant: what to do, where the results go.
 struct Job {
@@ -47,13 +47,15 @@ fn run_in_pool(arguments: &RenderArguments, started: Instant) -> Result<()> {
 
     catch_interruption();
     let show = if arguments.quiet || arguments.no_progress { ShowProgress::No } else { ShowProgress::Yes };
+    let clock = RenderClock::start();
     let watch = Watch::new(&job.film, &job.stop, arguments.time, job.checkpoint.clone(), show);
     let outcome = render(&job.scene, job.integrator.as_mut(), &mut job.film, &job.stop, &watch);
+    let time = clock.elapsed();
     watch.finish(&job.film, job.integrator.as_ref());
 
     // A failure of one file keeps none of the others from being written.
     let written = write_outputs(arguments, &job);
-    let statistics = statistics(&job, &watch, started, seconds_build);
+    let statistics = statistics(&job, &watch, started, seconds_build, &time);
     let noted = arguments.stats.as_ref().map_or(Ok(()), |path| statistics.write(path));
     if !arguments.quiet {
         report_faults(&job.film);
@@ -201,30 +203,36 @@ fn report_faults(film: &Film) {
     }
 }
 
-fn statistics(job: &Job, watch: &Watch, started: Instant, seconds_build: f64) -> Statistics {
+fn statistics(
+    job: &Job,
+    watch: &Watch,
+    started: Instant,
+    seconds_build: f64,
+    time: &RenderTime,
+) -> Statistics {
+    let rays = watch.rays();
     let relative_error = job.film.relative_error();
-    let mut statistics = Statistics {
+    Statistics {
         version: env!("CARGO_PKG_VERSION"),
         integrator: method_name(&job.scene.integrator.type_name),
-        seconds_total: 0.0,
+        seconds_total: started.elapsed().as_secs_f64(),
         seconds_build,
-        seconds_render: watch.elapsed().as_secs_f64(),
-        cpu_seconds: 0.0,
+        seconds_render: time.wall.as_secs_f64(),
+        cpu_seconds: stats::cpu_time().map_or(0.0, |time| time.as_secs_f64()),
+        thread_cpu_seconds: time.threads.iter().map(Duration::as_secs_f64).collect(),
+        busy_share: time.busy_share(),
         passes: job.film.n_passes(),
         spp: job.film.n_passes(),
         samples: watch.n_samples(),
-        rays: 0,
-        shadow_rays: 0,
+        rays: rays.closest,
+        shadow_rays: rays.closest,
         photons_stored: 0,
-        peak_memory_bytes: 0,
+        peak_memory_bytes: stats::peak_memory().unwrap_or(0),
         threads: rayon::current_num_threads(),
         nan_samples: job.film.sums().faults.invalid,
         saturated_samples: job.film.sums().faults.saturated,
         relative_error: relative_error.is_finite().then_some(relative_error),
-    };
-    statistics.measure_process(watch.rays());
-    statistics.seconds_total = started.elapsed().as_secs_f64();
-    statistics
+    }
 }
 
 fn report_end(job: &Job, statistics: &Statistics) {

@@ -1,9 +1,9 @@
 //! What a render cost, for `--stats`.
 
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use etendue::transport::RayCounts;
+use cpu_time::{ProcessTime, ThreadTime};
 use serde::Serialize;
 
 use crate::failure::{Failure, Result};
@@ -21,8 +21,12 @@ pub(crate) struct Statistics {
     pub(crate) seconds_build: f64,
     /// Wall time of rendering.
     pub(crate) seconds_render: f64,
-    /// Processor time of all threads, user and system; 0 where the system does not tell.
+    /// Processor time of all threads since the start of the process, user and system; 0 where the system does not tell.
     pub(crate) cpu_seconds: f64,
+    /// Processor time of each thread during rendering.
+    pub(crate) thread_cpu_seconds: Vec<f64>,
+    /// The least of these over the wall time of rendering: 1 if no thread ever waited, for work or for a processor.
+    pub(crate) busy_share: f64,
     /// Passes in the image.
     pub(crate) passes: u64,
     /// Samples per pixel in the image.
@@ -48,14 +52,6 @@ pub(crate) struct Statistics {
 }
 
 impl Statistics {
-    /// Adds what the system knows of the process.
-    pub(crate) fn measure_process(&mut self, rays: RayCounts) {
-        self.rays = rays.closest;
-        self.shadow_rays = rays.shadow;
-        self.cpu_seconds = cpu_time().map_or(0.0, |t| t.as_secs_f64());
-        self.peak_memory_bytes = peak_memory().unwrap_or(0);
-    }
-
     /// Writes them as JSON.
     pub(crate) fn write(&self, path: &Path) -> Result<()> {
         let failed = |error: String| Failure::Running(format!("cannot write {}: {error}", path.display()));
@@ -64,17 +60,63 @@ impl Statistics {
     }
 }
 
-/// Processor time of the process, from Linux's /proc.
-fn cpu_time() -> Option<Duration> {
-    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // Fields 14 and 15, user and system time, in ticks of 10 ms; field 2 may hold spaces but ends with ')'.
-    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
-    let ticks: u64 = fields.get(11)?.parse::<u64>().ok()? + fields.get(12)?.parse::<u64>().ok()?;
-    Some(Duration::from_millis(ticks * 10))
+/// Measures a render: by the clock on the wall, and by those of the threads of the current rayon pool.
+#[derive(Clone, Debug)]
+pub(crate) struct RenderClock {
+    started: Instant,
+    threads: Vec<Duration>,
+}
+
+/// What a render took.
+#[derive(Clone, Debug)]
+pub(crate) struct RenderTime {
+    /// Wall time.
+    pub(crate) wall: Duration,
+    /// Processor time of each thread.
+    pub(crate) threads: Vec<Duration>,
+}
+
+impl RenderClock {
+    /// Starts it.
+    pub(crate) fn start() -> Self {
+        let threads = thread_times();
+        Self { started: Instant::now(), threads }
+    }
+
+    /// The time since.
+    pub(crate) fn elapsed(&self) -> RenderTime {
+        let wall = self.started.elapsed();
+        let threads =
+            thread_times().into_iter().zip(&self.threads).map(|(now, then)| now.saturating_sub(*then));
+        RenderTime { wall, threads: threads.collect() }
+    }
+}
+
+impl RenderTime {
+    /// See [`Statistics::busy_share`].
+    pub(crate) fn busy_share(&self) -> f64 {
+        let least = self.threads.iter().min().copied().unwrap_or_default();
+        least.as_secs_f64() / self.wall.as_secs_f64().max(1e-9)
+    }
+}
+
+/// Processor time of each thread of the current rayon pool so far; 0 where the system does not tell.
+fn thread_times() -> Vec<Duration> {
+    rayon::broadcast(|_| thread_time())
+}
+
+/// Processor time of the current thread so far; 0 where the system does not tell.
+pub(crate) fn thread_time() -> Duration {
+    ThreadTime::try_now().map_or(Duration::ZERO, |time| time.as_duration())
+}
+
+/// Processor time of the process.
+pub(crate) fn cpu_time() -> Option<Duration> {
+    ProcessTime::try_now().ok().map(|time| time.as_duration())
 }
 
 /// Largest resident memory of the process, from Linux's /proc.
-fn peak_memory() -> Option<u64> {
+pub(crate) fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
     let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;

@@ -31,8 +31,27 @@ fn keys() {
     assert!(number("relative_error") > 0.0, "{stats}");
     if cfg!(target_os = "linux") {
         assert!(number("peak_memory_bytes") > 1e6, "{stats}");
-        assert!(number("cpu_seconds") >= 0.0, "{stats}");
     }
+}
+
+/// The processor time of the process is that of its threads and a little more; no thread works longer than the render
+/// takes, and the least busy one gives the share.
+#[test]
+fn threads_are_timed() {
+    let folder = Folder::with_scene(ROOM);
+    let stats = statistics(&folder, "--spp 8 --threads 3");
+    let number = |key: &str| stats[key].as_f64().unwrap_or_else(|| panic!("{key} in {stats}"));
+    let threads: Vec<f64> =
+        stats["thread_cpu_seconds"].as_array().expect("a list").iter().filter_map(Value::as_f64).collect();
+    assert_eq!(threads.len(), 3, "{stats}");
+    let sum: f64 = threads.iter().sum();
+    assert!(sum <= number("cpu_seconds"), "{stats}");
+    // Elsewhere clocks may tick more slowly than this render takes.
+    assert!(sum > 0.0 || !cfg!(target_os = "linux"), "{stats}");
+    // Clocks of threads and walls need not agree on the last millisecond.
+    assert!(threads.iter().all(|s| (0.0..number("seconds_render") + 0.02).contains(s)), "{stats}");
+    let least = threads.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!((number("busy_share") - least / number("seconds_render")).abs() < 1e-9, "{stats}");
 }
 
 /// Rays are counted alike by any number of threads.
