@@ -61,6 +61,10 @@ pub(crate) trait Visitor {
     fn triangle(&mut self, triangle: PrimitiveRef, t: f32, b: [f32; 2]) -> Verdict;
     /// The ray meets the box of an item no farther than `t_max`.
     fn item(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict;
+    /// The children of a node are about to be tested.
+    fn note_node(&mut self);
+    /// A block of triangles is about to be tested.
+    fn note_block(&mut self);
 }
 
 /// The tree. Its root is node 0; no node at all means no primitive.

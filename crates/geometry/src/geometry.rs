@@ -9,6 +9,7 @@ use crate::instance::Instance;
 use crate::mesh::heap;
 use crate::shape::entity::Entity;
 use crate::shape::resolve;
+use crate::work::{Unnoted, Work};
 
 /// Everything that a ray can meet. Made by [`crate::GeometryBuilder`].
 #[derive(Debug)]
@@ -68,18 +69,28 @@ impl Geometry {
     /// primitive. `filter` sees each candidate and may refuse it.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32, filter: &impl Fn(&Hit) -> bool) -> Option<Hit> {
-        let mut search =
-            Search::<_, false> { geometry: self, ray, instance: NO_INSTANCE, filter, best: None };
-        search.run(WORLD, t_max.next_down());
-        search.best
+        self.search::<_, _, false>(ray, t_max, filter, Unnoted)
     }
 
     /// True if any accepted hit has t in (0, `t_max`).
     #[inline]
     pub fn occluded(&self, ray: &Ray, t_max: f32, filter: &impl Fn(&Hit) -> bool) -> bool {
-        let mut search = Search::<_, true> { geometry: self, ray, instance: NO_INSTANCE, filter, best: None };
+        self.search::<_, _, true>(ray, t_max, filter, Unnoted).is_some()
+    }
+
+    /// The nearest hit, or `ANY` hit; `work` notes what it takes.
+    #[inline(always)]
+    pub(crate) fn search<F: Fn(&Hit) -> bool, W: Work, const ANY: bool>(
+        &self,
+        ray: &Ray,
+        t_max: f32,
+        filter: &F,
+        work: W,
+    ) -> Option<Hit> {
+        let mut search =
+            Search::<_, _, ANY> { geometry: self, ray, instance: NO_INSTANCE, filter, work, best: None };
         search.run(WORLD, t_max.next_down());
-        search.best.is_some()
+        search.best
     }
 
     /// Position and normals at a hit, in world space. `ray` is the ray that found the hit.
@@ -162,16 +173,17 @@ impl Geometry {
 }
 
 /// One question in progress: the nearest hit, or `ANY` hit.
-struct Search<'a, F, const ANY: bool> {
+struct Search<'a, F, W, const ANY: bool> {
     geometry: &'a Geometry,
     /// The ray in the space of the group that is searched.
     ray: &'a Ray,
     instance: u32,
     filter: &'a F,
+    work: W,
     best: Option<Hit>,
 }
 
-impl<F: Fn(&Hit) -> bool, const ANY: bool> Search<'_, F, ANY> {
+impl<F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Search<'_, F, W, ANY> {
     /// Searches a group for hits with t in (0, `t_max`].
     #[inline]
     fn run(&mut self, group: u32, t_max: f32) {
@@ -211,11 +223,13 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Search<'_, F, ANY> {
     #[inline(always)]
     fn enter(&mut self, index: u32, t_max: f32) -> Verdict {
         let instance = &self.geometry.instances[index as usize];
-        let mut inner = Search::<_, ANY> {
+        self.work.note_instance();
+        let mut inner = Search::<_, _, ANY> {
             geometry: self.geometry,
             ray: &instance.group_ray(self.ray),
             instance: index,
             filter: self.filter,
+            work: self.work,
             best: None,
         };
         inner.run(instance.group, t_max);
@@ -259,7 +273,7 @@ const fn order(hit: &Hit) -> (u32, u32, u32) {
     (hit.instance, hit.geometry.0, hit.primitive)
 }
 
-impl<F: Fn(&Hit) -> bool, const ANY: bool> Visitor for Search<'_, F, ANY> {
+impl<F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Visitor for Search<'_, F, W, ANY> {
     const ANY: bool = ANY;
 
     #[inline]
@@ -271,5 +285,15 @@ impl<F: Fn(&Hit) -> bool, const ANY: bool> Visitor for Search<'_, F, ANY> {
     #[inline(always)]
     fn item(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict {
         if item.geometry == INSTANCE { self.enter(item.primitive, t_max) } else { self.shape(item, t_max) }
+    }
+
+    #[inline(always)]
+    fn note_node(&mut self) {
+        self.work.note_node();
+    }
+
+    #[inline(always)]
+    fn note_block(&mut self) {
+        self.work.note_block();
     }
 }

@@ -17,6 +17,7 @@ mod lamp;
 mod light_sampling;
 mod refit;
 mod subdivision;
+mod work;
 
 mod bvh;
 mod double;
@@ -36,3 +37,4 @@ pub use mesh::{BilinearMesh, MeshError, TriangleMesh};
 pub use refit::MovedVertices;
 pub use shape::Shape;
 pub use subdivision::loop_subdivide;
+pub use work::TraversalWork;

@@ -62,7 +62,10 @@ pub(super) fn traverse<L: Lanes, V: Visitor>(lanes: L, bvh: &Bvh, ray: &Ray, t_m
     let mut current = 0;
     loop {
         let descended = match current >> 30 {
-            INNER => descend::<L, V>(lanes, lanes.node(bvh, current), ray, end, &mut stack),
+            INNER => {
+                visitor.note_node();
+                descend::<L, V>(lanes, lanes.node(bvh, current), ray, end, &mut stack)
+            }
             TRIANGLES => {
                 if !visit_triangles(lanes, bvh, current, ray, &mut end, visitor) {
                     return;
@@ -146,6 +149,7 @@ fn visit_triangles<L: Lanes>(
 ) -> bool {
     let mut hits = Hits::NONE;
     for block in lanes.blocks(bvh, leaf) {
+        visitor.note_block();
         let mut mask = block.intersect(lanes, ray, *end, &mut hits);
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize & 7;

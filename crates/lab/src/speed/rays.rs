@@ -1,6 +1,6 @@
 //! The rays that a path tracer sends into a model.
 
-use etendue_geometry::Geometry;
+use etendue_geometry::{Geometry, TraversalWork};
 use etendue_math::{Frame, Point2, Point3, Ray, Rng, Vector3, offset_ray_origin, warp};
 
 use super::model::Model;
@@ -51,6 +51,15 @@ impl RaySet {
             return rays.filter(|ray| geometry.occluded(ray, self.t_max, &|_| true)).count();
         }
         rays.filter(|ray| geometry.intersect(ray, self.t_max, &|_| true).is_some()).count()
+    }
+
+    /// The steps that all of them take.
+    #[must_use]
+    pub fn work(&self, geometry: &Geometry) -> TraversalWork {
+        match self.kind {
+            RayKind::Shadow => geometry.work_to_occlude(&self.rays, self.t_max),
+            _ => geometry.work_to_intersect(&self.rays, self.t_max),
+        }
     }
 }
 
