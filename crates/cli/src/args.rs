@@ -267,6 +267,10 @@ pub(crate) enum StudyName {
     Convergence,
     /// How the mean of one pixel settles
     Pixel,
+    /// What rays and building cost, against the number of triangles; processor times, in one thread
+    SceneSize,
+    /// Error of the ways to find the light, against the size of the lamp
+    LightSize,
 }
 
 /// Arguments of `brdf`.

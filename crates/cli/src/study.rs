@@ -3,11 +3,15 @@
 use std::fs;
 use std::path::Path;
 
-use etendue::lab::{ConvergenceSettings, PixelSettings, convergence, pixel};
+use etendue::lab::{
+    ConvergenceSettings, LightSizeSettings, PixelSettings, SceneSizeSettings, convergence, light_size, pixel,
+    scene_size,
+};
 
 use crate::args::{StudyArguments, StudyName};
 use crate::failure::{Failure, Result};
 use crate::report;
+use crate::stats::thread_time;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &StudyArguments) -> Result<()> {
@@ -15,29 +19,42 @@ pub(crate) fn run(arguments: &StudyArguments) -> Result<()> {
     fs::create_dir_all(&arguments.out).map_err(|error| {
         Failure::Running(format!("cannot make the folder {}: {error}", arguments.out.display()))
     })?;
-    let (name, csv, svg, summary) = match arguments.name {
-        StudyName::Convergence => {
-            let settings = if arguments.quick {
-                ConvergenceSettings::quick(arguments.seed)
-            } else {
-                ConvergenceSettings::full(arguments.seed)
-            };
-            let study = convergence(&settings, &mut |what| report::note(what));
-            ("convergence", study.csv(), study.svg(), study.summary())
-        }
-        StudyName::Pixel => {
-            let settings = if arguments.quick {
-                PixelSettings::quick(arguments.seed)
-            } else {
-                PixelSettings::full(arguments.seed)
-            };
-            let study = pixel(&settings);
-            ("pixel", study.csv(), study.svg(), study.summary())
-        }
-    };
+    let (name, csv, svg, summary) = measure(arguments)?;
     report::note(summary.trim_end());
     write(&arguments.out, &format!("{name}.csv"), &csv)?;
     write(&arguments.out, &format!("{name}.svg"), &svg)
+}
+
+/// Name, table, figure and summary of a study.
+fn measure(arguments: &StudyArguments) -> Result<(&'static str, String, String, String)> {
+    let (quick, seed) = (arguments.quick, arguments.seed);
+    let mut note = |what: &str| report::note(what);
+    Ok(match arguments.name {
+        StudyName::Convergence => {
+            let settings =
+                if quick { ConvergenceSettings::quick(seed) } else { ConvergenceSettings::full(seed) };
+            let study = convergence(&settings, &mut note);
+            ("convergence", study.csv(), study.svg(), study.summary())
+        }
+        StudyName::Pixel => {
+            let settings = if quick { PixelSettings::quick(seed) } else { PixelSettings::full(seed) };
+            let study = pixel(&settings);
+            ("pixel", study.csv(), study.svg(), study.summary())
+        }
+        StudyName::SceneSize => {
+            let settings = if quick { SceneSizeSettings::quick() } else { SceneSizeSettings::full() };
+            // In one thread, whose processor time is then that of all the work.
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+            let pool = pool.map_err(|error| Failure::Running(format!("cannot start a thread: {error}")))?;
+            let study = pool.install(|| scene_size(&settings, &thread_time, &mut |what| report::note(what)));
+            ("scene-size", study.csv(), study.svg(), study.summary())
+        }
+        StudyName::LightSize => {
+            let settings = if quick { LightSizeSettings::quick(seed) } else { LightSizeSettings::full(seed) };
+            let study = light_size(&settings, &mut note);
+            ("light-size", study.csv(), study.svg(), study.summary())
+        }
+    })
 }
 
 fn write(folder: &Path, name: &str, text: &str) -> Result<()> {

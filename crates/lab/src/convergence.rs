@@ -8,18 +8,16 @@
 //! dimension grows.
 //!
 //! The error is the root of the mean square over pixels, channels and several independent scrambles, against the mean
-//! of many long Sobol renders. That reference has an error too, which is measured by the spread of the renders and
-//! subtracted: `E (x - r)^2 = E (x - mu)^2 + Var r`.
+//! of many long Sobol renders, see [`crate::reference`].
 
 use std::fmt::Write;
 
-use etendue_image::Image;
-use etendue_math::hash64;
 use rayon::prelude::*;
 
 use crate::estimator::{Estimator, LightChoice, SamplerChoice};
 use crate::fit::PowerLaw;
 use crate::plot::{Corner, Mark, Panel, Series, draw};
+use crate::reference::{Reference, ReferenceSettings, trial_seed};
 use crate::scenes::StudyScene;
 
 /// Settings of the study.
@@ -29,10 +27,8 @@ pub struct ConvergenceSettings {
     pub experiments: Vec<Experiment>,
     /// Independent runs of each estimator, at least 2.
     pub n_scrambles: u32,
-    /// Runs that make up the reference, at least 2.
-    pub n_reference_scrambles: u32,
-    /// Samples per pixel of each of them.
-    pub reference_samples: u32,
+    /// What errors are measured against.
+    pub reference: ReferenceSettings,
     /// Determines all random numbers.
     pub seed: u64,
 }
@@ -52,7 +48,12 @@ impl ConvergenceSettings {
     pub fn full(seed: u64) -> Self {
         let experiments =
             vec![Experiment::soft_shadow([32, 24], 256), Experiment::standard_box([32, 32], 256, 1000)];
-        Self { experiments, n_scrambles: 16, n_reference_scrambles: 16, reference_samples: 1024, seed }
+        Self {
+            experiments,
+            n_scrambles: 16,
+            reference: ReferenceSettings { n_scrambles: 16, n_samples: 1024 },
+            seed,
+        }
     }
 
     /// A rough version that takes a tenth of the time.
@@ -60,7 +61,12 @@ impl ConvergenceSettings {
     pub fn quick(seed: u64) -> Self {
         let experiments =
             vec![Experiment::soft_shadow([16, 12], 128), Experiment::standard_box([16, 16], 128, 100)];
-        Self { experiments, n_scrambles: 8, n_reference_scrambles: 8, reference_samples: 1024, seed }
+        Self {
+            experiments,
+            n_scrambles: 8,
+            reference: ReferenceSettings { n_scrambles: 8, n_samples: 1024 },
+            seed,
+        }
     }
 }
 
@@ -182,13 +188,6 @@ impl ErrorCurve {
     }
 }
 
-/// Kinds of seeds, so that the reference shares no random numbers with what it judges.
-#[derive(Clone, Copy, Debug)]
-enum Purpose {
-    Trial,
-    Reference,
-}
-
 /// Runs the study. `progress` hears of each estimator before it starts.
 pub fn convergence(settings: &ConvergenceSettings, progress: &mut dyn FnMut(&str)) -> Convergence {
     let panels = settings.experiments.iter().map(|e| measure(e, settings, progress)).collect();
@@ -202,67 +201,25 @@ fn measure(
 ) -> ConvergencePanel {
     let scene = &experiment.scene;
     progress(&format!("{}: reference", scene.name));
-    let reference = Reference::render(scene, settings);
+    let reference = Reference::render(scene, settings.reference, settings.seed);
     let curves = experiment.estimators.iter().map(|(estimator, counts)| {
         progress(&format!("{}: {}", scene.name, estimator.name()));
         let square_errors = (0..settings.n_scrambles)
             .into_par_iter()
             .map(|k| {
-                let seed = hash64(&[settings.seed, Purpose::Trial as u64, u64::from(k)]);
-                let images = estimator.images(scene, seed, counts);
+                let images = estimator.images(scene, trial_seed(settings.seed, k), counts);
                 images.iter().map(|image| reference.square_error(image)).collect()
             })
             .collect();
         ErrorCurve { estimator: estimator.name(), counts: counts.clone(), square_errors }
     });
     let curves = curves.collect();
-    let reference_error = reference.variance.sqrt();
-    ConvergencePanel { scene: scene.name.clone(), mean: mean(&reference.values), reference_error, curves }
-}
-
-/// What is taken for the truth.
-struct Reference {
-    /// All channels of all pixels.
-    values: Vec<f64>,
-    /// Variance of the values, averaged over them.
-    variance: f64,
-}
-
-impl Reference {
-    fn render(scene: &StudyScene, settings: &ConvergenceSettings) -> Self {
-        let estimator = Estimator::of_sampler(SamplerChoice::Sobol);
-        let runs: Vec<Vec<f64>> = (0..settings.n_reference_scrambles)
-            .into_par_iter()
-            .map(|k| {
-                let seed = hash64(&[settings.seed, Purpose::Reference as u64, u64::from(k)]);
-                let images = estimator.images(scene, seed, &[settings.reference_samples]);
-                colors(&images[0])
-            })
-            .collect();
-        let n = runs.len() as f64;
-        let values: Vec<f64> =
-            (0..runs[0].len()).map(|i| runs.iter().map(|run| run[i]).sum::<f64>() / n).collect();
-        let spread: f64 = runs.iter().map(|run| mean_square_difference(run, &values)).sum();
-        Self { values, variance: spread / (n * (n - 1.0)) }
+    ConvergencePanel {
+        scene: scene.name.clone(),
+        mean: reference.mean(),
+        reference_error: reference.error(),
+        curves,
     }
-
-    /// Mean square error of an image that is independent of the reference.
-    fn square_error(&self, image: &Image) -> f64 {
-        mean_square_difference(&colors(image), &self.values) - self.variance
-    }
-}
-
-fn colors(image: &Image) -> Vec<f64> {
-    let pixels = image.rgb_pixels().expect("a developed film has colour");
-    pixels.into_iter().flatten().map(f64::from).collect()
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
-fn mean_square_difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64
 }
 
 impl Convergence {

@@ -73,10 +73,25 @@ pub enum LightChoice {
     /// As the scene says.
     #[default]
     AsInScene,
+    /// By sampling them and by running into them.
+    Both,
     /// By sampling them alone.
     Lights,
     /// By running into them alone.
     Scattering,
+}
+
+impl LightChoice {
+    /// The value of the parameter.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AsInScene => "as in the scene",
+            Self::Both => "both",
+            Self::Lights => "lights",
+            Self::Scattering => "scattering",
+        }
+    }
 }
 
 /// An estimator of the image of a scene.
@@ -100,7 +115,7 @@ impl Estimator {
     pub fn name(&self) -> String {
         let sampler = self.sampler.name();
         match self.lights {
-            LightChoice::AsInScene | LightChoice::Lights => sampler.to_owned(),
+            LightChoice::AsInScene | LightChoice::Both | LightChoice::Lights => sampler.to_owned(),
             LightChoice::Scattering => format!("{sampler} without light sampling"),
         }
     }
@@ -143,14 +158,10 @@ impl Estimator {
     /// If the scene names an integrator that does not exist.
     pub(crate) fn integrator(&self, scene: &Scene) -> Box<dyn Integrator> {
         let mut entity: Entity = scene.integrator.clone();
-        let word = match self.lights {
-            LightChoice::AsInScene => None,
-            LightChoice::Lights => Some("lights"),
-            LightChoice::Scattering => Some("scattering"),
-        };
-        if let Some(word) = word {
+        if self.lights != LightChoice::AsInScene {
             entity.parameters.retain(|p| p.name != "lights");
-            entity.parameters.push(Parameter::new("lights", Value::Strings(vec![word.to_owned()])));
+            let word = self.lights.name().to_owned();
+            entity.parameters.push(Parameter::new("lights", Value::Strings(vec![word])));
         }
         let none = PathExpressions::new(&[]).expect("no expression is in error");
         method(&entity, none).0.expect("the scene names an integrator that exists")

@@ -4,11 +4,14 @@
 //! alone, never on the number of threads. Front ends write the files.
 
 pub mod estimator;
+pub mod reference;
 pub mod scenes;
 
 pub mod brdf;
 pub mod convergence;
+pub mod light_size;
 pub mod pixel;
+pub mod scene_size;
 pub mod speed;
 
 pub mod fit;
@@ -17,7 +20,10 @@ pub mod plot;
 pub use brdf::{Exploration, Subject, explore, law_table};
 pub use convergence::{Convergence, ConvergenceSettings, convergence};
 pub use estimator::{Estimator, SamplerChoice};
+pub use light_size::{LightSize, LightSizeSettings, light_size};
 pub use pixel::{PixelSettings, PixelStudy, pixel};
+pub use reference::ReferenceSettings;
+pub use scene_size::{SceneSize, SceneSizeSettings, scene_size};
 pub use scenes::StudyScene;
 
 #[cfg(test)]

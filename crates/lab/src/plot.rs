@@ -66,6 +66,8 @@ pub enum Axes {
     Logarithmic,
     /// Proportional, within a horizontal range; the vertical one begins at 0.
     Linear([f64; 2]),
+    /// Logarithms across, proportional upwards from 0: a law of the logarithm is a line.
+    SemiLogarithmic,
 }
 
 /// Colours of the series, in turn.
@@ -235,6 +237,9 @@ impl Layout {
 
 /// Grid lines of an axis: enough for nine in each of three decades.
 const MAX_LINES: usize = 40;
+/// Horizontal axes that span more have powers of ten for labels: others would run into each other.
+const LABELLED_RANGE: f64 = 1e4;
+const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 /// Room for a legend in the lower corner, as a share of the height of the curves.
 const LEGEND_SHARE: f64 = 0.3;
 
@@ -252,12 +257,17 @@ impl Panel {
                 let [x, y] = [self.range(0), self.y_range.unwrap_or_else(|| self.y_range_with_legend())];
                 let x_axis = (x[0]..x[1]).log_scale();
                 let chart = builder.build_cartesian_2d(x_axis, (y[0]..y[1]).log_scale());
-                self.fill(chart.expect(IN_MEMORY), y, label);
+                self.fill(chart.expect(IN_MEMORY), y, [x_label(x), label]);
             }
             Axes::Linear(x) => {
-                let y = self.y_range.unwrap_or_else(|| [0.0, self.range(1)[1]]);
+                let y = self.y_range_from_0();
                 let chart = builder.build_cartesian_2d(x[0]..x[1], y[0]..y[1]);
-                self.fill(chart.expect(IN_MEMORY), y, decimal);
+                self.fill(chart.expect(IN_MEMORY), y, [decimal; 2]);
+            }
+            Axes::SemiLogarithmic => {
+                let [x, y] = [self.range(0), self.y_range_from_0()];
+                let chart = builder.build_cartesian_2d((x[0]..x[1]).log_scale(), y[0]..y[1]);
+                self.fill(chart.expect(IN_MEMORY), y, [x_label(x), decimal]);
             }
         }
     }
@@ -266,13 +276,14 @@ impl Panel {
         &self,
         mut chart: ChartContext<'b, B, Cartesian2d<X, Y>>,
         y: [f64; 2],
-        label: fn(f64) -> String,
+        [x_label, y_label]: [fn(f64) -> String; 2],
     ) where
         B: DrawingBackend + 'b,
         X: Ranged<ValueType = f64> + ValueFormatter<f64>,
         Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
-        let is_linear = self.axes != Axes::Logarithmic;
+        let is_linear = [matches!(self.axes, Axes::Linear(_)), self.axes != Axes::Logarithmic];
+        let [x_lines, y_lines] = is_linear.map(|is_linear| if is_linear { 10 } else { MAX_LINES });
         chart
             .configure_mesh()
             .x_desc(&self.x_label)
@@ -281,10 +292,10 @@ impl Panel {
             .label_style(font(14))
             .bold_line_style(BLACK.mix(0.12))
             .max_light_lines(0)
-            .x_labels(if is_linear { 10 } else { MAX_LINES })
-            .y_labels(if is_linear { 10 } else { MAX_LINES })
-            .x_label_formatter(&once(label))
-            .y_label_formatter(&once(label))
+            .x_labels(x_lines)
+            .y_labels(y_lines)
+            .x_label_formatter(&once(x_label))
+            .y_label_formatter(&once(y_label))
             .draw()
             .expect(IN_MEMORY);
         let colors = if self.palette == Palette::Apart { COLORS } else { WAVELENGTH_COLORS };
@@ -294,7 +305,7 @@ impl Panel {
             let is_guide = series.mark == Mark::Dashes;
             let color = if is_guide { GUIDE_COLOR } else { colors[(n_colored.max(1) - 1) % colors.len()] };
             let style = color.stroke_width(if is_guide { 1 } else { 2 });
-            let is_drawn = |p: &&[f64; 2]| (is_linear || p[0] > 0.0) && p[1] >= y[0] && p[1] <= y[1];
+            let is_drawn = |p: &&[f64; 2]| (is_linear[0] || p[0] > 0.0) && p[1] >= y[0] && p[1] <= y[1];
             let points: Vec<(f64, f64)> =
                 series.points.iter().filter(is_drawn).map(|p| (p[0], p[1])).collect();
             if series.mark == Mark::LineAndDots {
@@ -323,6 +334,10 @@ impl Panel {
             .background_style(WHITE.mix(0.85))
             .draw()
             .expect(IN_MEMORY);
+    }
+
+    fn y_range_from_0(&self) -> [f64; 2] {
+        self.y_range.unwrap_or_else(|| [0.0, self.range(1)[1]])
     }
 
     fn y_range_with_legend(&self) -> [f64; 2] {
@@ -372,6 +387,22 @@ fn label(value: f64) -> String {
     let leading = value / 10.0_f64.powf(value.log10().floor());
     let is_labelled = [1.0, 2.0, 5.0, 10.0].iter().any(|digit| (leading - digit).abs() < 1e-6);
     if is_labelled { decimal(value) } else { String::new() }
+}
+
+/// Labels of a horizontal axis with logarithms.
+fn x_label([low, high]: [f64; 2]) -> fn(f64) -> String {
+    if high / low > LABELLED_RANGE { power_of_ten } else { label }
+}
+
+/// The number of a grid line if it is a power of ten.
+fn power_of_ten(value: f64) -> String {
+    let exponent = value.log10();
+    if (exponent - exponent.round()).abs() > 1e-6 {
+        return String::new();
+    }
+    let digits = format!("{}", exponent.round()).replace('-', "⁻");
+    let raised = digits.chars().map(|c| c.to_digit(10).map_or(c, |d| SUPERSCRIPTS[d as usize]));
+    std::iter::once("10".to_owned()).chain(raised.map(String::from)).collect()
 }
 
 /// A number without exponent or trailing zeros.

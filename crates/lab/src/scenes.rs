@@ -41,7 +41,8 @@ impl StudyScene {
         Self::of_text("Cornell box", include_str!("../../../scenes/cornell.pbrt"))
     }
 
-    fn of_text(name: &str, text: &str) -> Self {
+    /// A scene of this crate.
+    pub(crate) fn of_text(name: &str, text: &str) -> Self {
         let (document, diagnostics) = read_pbrt_str(name, text, Path::new(""));
         assert!(!diagnostics.has_errors(), "the scene \"{name}\" is part of this crate and reads");
         Self::new(name, document)

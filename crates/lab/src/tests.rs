@@ -1,12 +1,17 @@
+use std::cell::Cell;
 use std::sync::OnceLock;
+use std::time::Duration;
 
 use roxmltree::Document;
 
 use crate::convergence::{ErrorCurve, Experiment};
 use crate::estimator::LightChoice;
+use crate::light_size::{Room, SizeCurve, SizePoint, WAYS};
+use crate::scene_size::{KINDS, Laws, RayCost};
 use crate::{
-    Convergence, ConvergenceSettings, Estimator, PixelSettings, PixelStudy, SamplerChoice, StudyScene,
-    convergence, pixel,
+    Convergence, ConvergenceSettings, Estimator, LightSize, LightSizeSettings, PixelSettings, PixelStudy,
+    ReferenceSettings, SamplerChoice, SceneSize, SceneSizeSettings, StudyScene, convergence, light_size,
+    pixel, scene_size,
 };
 
 fn is_slow() -> bool {
@@ -21,8 +26,7 @@ fn small_settings() -> ConvergenceSettings {
     ConvergenceSettings {
         experiments,
         n_scrambles,
-        n_reference_scrambles: 16,
-        reference_samples: 1024,
+        reference: ReferenceSettings { n_scrambles: 16, n_samples: 1024 },
         seed: 7,
     }
 }
@@ -82,8 +86,7 @@ fn tenfold_paths_gain_the_root_of_ten() {
     let settings = ConvergenceSettings {
         experiments: vec![experiment],
         n_scrambles,
-        n_reference_scrambles: 16,
-        reference_samples: 1024,
+        reference: ReferenceSettings { n_scrambles: 16, n_samples: 1024 },
         seed: 2,
     };
     let study = convergence(&settings, &mut |_| ());
@@ -106,8 +109,7 @@ fn studies_are_deterministic() {
         let settings = ConvergenceSettings {
             experiments: vec![experiment],
             n_scrambles: 3,
-            n_reference_scrambles: 2,
-            reference_samples: 64,
+            reference: ReferenceSettings { n_scrambles: 2, n_samples: 64 },
             seed,
         };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().expect("threads start");
@@ -125,8 +127,7 @@ fn progress_names_the_estimators() {
     let settings = ConvergenceSettings {
         experiments: vec![Experiment { scene, estimators }],
         n_scrambles: 2,
-        n_reference_scrambles: 2,
-        reference_samples: 1,
+        reference: ReferenceSettings { n_scrambles: 2, n_samples: 1 },
         seed: 0,
     };
     let mut steps = Vec::new();
@@ -227,4 +228,157 @@ fn pixel_is_tabled_and_drawn() {
     check_csv(&study.csv(), 0, study.counts.len());
     check_svg(&study.svg(), &["200 estimators", "running mean", "one estimator", "1 ± σ/√N"], 3, 0);
     assert_eq!(study.summary().lines().count(), 2);
+}
+
+/// A small study of the size of scenes, by a clock that advances by a millisecond each time it is asked.
+fn small_scene_size() -> &'static SceneSize {
+    static STUDY: OnceLock<SceneSize> = OnceLock::new();
+    STUDY.get_or_init(|| {
+        let settings = SceneSizeSettings {
+            terrains: vec![8, 16, 32, 64, 128],
+            fractals: vec![0, 1],
+            resolution: [64, 48],
+            n_rounds: 2,
+        };
+        let now = Cell::new(Duration::ZERO);
+        let clock = || {
+            now.set(now.get() + Duration::from_millis(1));
+            now.get()
+        };
+        scene_size(&settings, &clock, &mut |_| ())
+    })
+}
+
+/// The steps of a ray grow by as much each time a mesh is refined, not by a factor (SPEC EXP-14, ACC-6): a line in log N.
+/// Nodes have eight children, so that twice as many triangles take at least a third of a step.
+#[test]
+fn steps_of_rays_grow_as_the_logarithm() {
+    let study = small_scene_size();
+    for (index, kind) in KINDS.iter().enumerate() {
+        let Laws { line, power } = study.ray_law("terrain", index, &RayCost::steps).expect("five terrains");
+        assert!(line.explained > 0.98, "{}: {line:?}", kind.name());
+        assert!((1.0 / 3.0..1.0).contains(&line.slope), "{}: {line:?}", kind.name());
+        assert!(power.slope < 0.25, "{}: {power:?}", kind.name());
+    }
+    // With 20 times as many triangles in the same copies, a ray enters about as many of them.
+    let copies: Vec<f64> = study.family("fractal").map(|model| model.rays[0].instances).collect();
+    assert!(copies[0] > 0.5 && (copies[1] / copies[0] - 1.0).abs() < 0.1, "{copies:?}");
+}
+
+/// Times are those of the clock that the caller brings.
+#[test]
+fn times_come_from_the_clock() {
+    let model = &small_scene_size().models[0];
+    assert_eq!(model.build_s, 1e-3);
+    assert_eq!(model.rays[0].time_s, 1e-3 / (64.0 * 48.0));
+    assert_eq!(model.build_ns_per_primitive(), 1e6 / 128.0);
+}
+
+/// The result of the study of the size of scenes is complete as a table and as a figure.
+#[test]
+fn scene_size_is_tabled_and_drawn() {
+    let study = small_scene_size();
+    check_csv(&study.csv(), 2, 7 * 3);
+    let texts = ["steps of a ray", "building", "fractal: shadow", "10³"];
+    check_svg(&study.svg(), &texts, 14, 2 * 3 * 7 + 7);
+    assert_eq!(study.summary().lines().count(), 1 + 2 * 7);
+}
+
+fn small_light_size() -> &'static LightSize {
+    static STUDY: OnceLock<LightSize> = OnceLock::new();
+    STUDY.get_or_init(|| {
+        let settings = LightSizeSettings {
+            sides: vec![0.0625, 0.25, 1.0],
+            resolution: [12, 12],
+            reference: ReferenceSettings { n_scrambles: 4, n_samples: 512 },
+            ..LightSizeSettings::quick(5)
+        };
+        light_size(&settings, &mut |_| ())
+    })
+}
+
+fn points(room: Room, way: LightChoice) -> &'static [SizePoint] {
+    &small_light_size().curve(room, way).expect("the study has this curve").points
+}
+
+/// Whoever runs into lamps by chance has an error as 1 / side; whoever samples them finds small ones as well as large
+/// ones (SPEC EXP-16).
+#[test]
+fn sampling_finds_lamps_of_any_size() {
+    let [lights, scattering] =
+        [LightChoice::Lights, LightChoice::Scattering].map(|way| points(Room::Matte, way));
+    for pair in lights.windows(2) {
+        assert!((pair[0].error / pair[1].error - 1.0).abs() < 0.25, "{lights:?}");
+    }
+    for pair in scattering.windows(2) {
+        let uncertainty = pair[0].uncertainty / pair[0].error + pair[1].uncertainty / pair[1].error;
+        let ratio = pair[0].error / pair[1].error;
+        // The law holds for lamps that are small as seen from everywhere; a lamp that fills the ceiling covers less of
+        // the hemisphere than its area promises.
+        assert!((ratio / 4.0).ln().abs() < 0.25 + 4.0 * uncertainty, "{ratio}: {scattering:?}");
+    }
+    for (sampled, found) in lights.iter().zip(scattering) {
+        assert!(found.error > 2.0 * sampled.error, "{sampled:?} {found:?}");
+    }
+}
+
+/// On polished metal chance is better where the lamp is large, and both together are as good as the better one.
+#[test]
+fn both_ways_are_as_good_as_the_better() {
+    let [both, lights, scattering] = WAYS.map(|way| points(Room::Metal, way));
+    assert!(lights[0].error < scattering[0].error && scattering[2].error < lights[2].error);
+    for ((both, lights), scattering) in both.iter().zip(lights).zip(scattering) {
+        let better = lights.error.min(scattering.error);
+        assert!(both.error < better + 3.0 * (both.uncertainty + lights.uncertainty), "{both:?}");
+    }
+    let study = small_light_size();
+    let crossing = study.crossing(Room::Metal, &|point| point.error).expect("they cross");
+    // Chance has more samples for its rays.
+    let at_rays = study.crossing(Room::Metal, &|point| point.error_at_equal_rays(64)).expect("they cross");
+    assert!(0.0625 < at_rays && at_rays < crossing && crossing < 1.0, "{at_rays} {crossing}");
+}
+
+/// Whoever samples no lamp sends no shadow rays.
+#[test]
+fn shadow_rays_are_for_sampled_lamps() {
+    for room in Room::ALL {
+        assert!(points(room, LightChoice::Scattering).iter().all(|point| point.shadow_rays == 0.0));
+        for way in [LightChoice::Both, LightChoice::Lights] {
+            let is_right = |point: &SizePoint| point.shadow_rays > 0.5 && point.shadow_rays <= point.rays;
+            assert!(points(room, way).iter().all(is_right), "{:?}", points(room, way));
+        }
+    }
+}
+
+/// Curves cross where a line between their points does, and only if the one that loses for small lamps wins for large ones.
+#[test]
+fn crossings_are_found() {
+    let curve = |way, errors: [f64; 3]| {
+        let points = std::iter::zip([0.25, 0.5, 1.0], errors)
+            .map(|(side, error)| SizePoint { side, error, uncertainty: 0.0, rays: 2.0, shadow_rays: 2.0 })
+            .collect();
+        SizeCurve { room: Room::Matte, way, points }
+    };
+    let crossing = |scattering: [f64; 3]| {
+        let curves = vec![curve(LightChoice::Lights, [1.0; 3]), curve(LightChoice::Scattering, scattering)];
+        LightSize { n_samples: 64, curves }.crossing(Room::Matte, &|point| point.error)
+    };
+    let side = crossing([4.0, 2.0, 0.5]).expect("they cross");
+    assert!((side - 0.5_f64.sqrt()).abs() < 1e-12, "{side}");
+    assert_eq!(crossing([4.0, 2.0, 1.5]), None);
+    assert_eq!(crossing([0.4, 0.2, 0.1]), None);
+    // 64 samples of four rays are half of 512.
+    let point = SizePoint { side: 1.0, error: 1.0, uncertainty: 0.0, rays: 2.0, shadow_rays: 2.0 };
+    assert_eq!(point.error_at_equal_rays(64), 0.5_f64.sqrt());
+}
+
+/// The result of the study of lamps is complete as a table and as a figure.
+#[test]
+fn light_size_is_tabled_and_drawn() {
+    let study = small_light_size();
+    check_csv(&study.csv(), 2, 2 * 3 * 3);
+    let texts =
+        ["metal room at 64 samples per pixel", "at 512 rays per pixel", "side of the lamp", "scattering"];
+    check_svg(&study.svg(), &texts, 2 * 6, 2 * 18);
+    assert_eq!(study.summary().lines().count(), 4);
 }

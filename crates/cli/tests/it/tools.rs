@@ -146,6 +146,11 @@ fn studies() {
     assert_eq!(folder.read("a/pixel.csv"), folder.read("b/deep/pixel.csv"));
     let svg = String::from_utf8(folder.read("a/pixel.svg")).expect("text");
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+    folder.run("study scene-size --quick").expect(0).says("terrain, bounce rays");
+    let csv = String::from_utf8(folder.read("scene-size.csv")).expect("text");
+    let positive =
+        |row: &str| row.rsplit(',').next().is_some_and(|s| s.parse::<f64>().is_ok_and(|s| s > 0.0));
+    assert!(csv.lines().skip(1).all(positive), "the clock of the thread runs: {csv}");
     folder.write("file", "");
     folder.run("study pixel --quick --out file").expect(1).says("cannot make the folder file");
     folder.run("study everything").expect(2).says("convergence");
