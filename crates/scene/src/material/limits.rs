@@ -41,8 +41,8 @@ pub(super) fn albedo_opt(p: &mut Parameters<'_, '_>, name: &'static str) -> Opti
     Some(texture)
 }
 
-/// Warns if two reflectances of one surface sum to more than 1 in some band: single wavelengths of saturated colours may,
-/// and are scaled without a word.
+/// Warns if two reflectances of one surface sum to more than 1 in some band: single wavelengths of saturated colours
+/// may, and are scaled without a word.
 pub(super) fn sum_of_albedos(
     p: &mut Parameters<'_, '_>,
     [a, b]: [&'static str; 2],

@@ -1,9 +1,9 @@
-//! A polished coat over a diffuse base: varnished wood, smooth plastic, brushed metal (Ashikhmin and Shirley 2000, "An
-//! Anisotropic Phong BRDF Model").
+//! A polished coat over a diffuse base: varnished wood, smooth plastic, brushed metal (Ashikhmin and Shirley 2000,
+//! "An Anisotropic Phong BRDF Model").
 //!
-//! `f_s = sqrt((n_u + 1)(n_v + 1))/(8 pi) (n·h)^(n_u cos² phi + n_v sin² phi) F(h·wo) / ((h·wo) max(cos_o, cos_i))` with
-//! Schlick's Fresnel factor `F(u) = k_s + (1 - k_s)(1 - u)⁵`, and below it, for what the coat lets pass,
-//! `f_d = 28 k_d/(23 pi) (1 - k_s) (1 - (1 - cos_o/2)⁵) (1 - (1 - cos_i/2)⁵)` (SPEC BRDF-19). Reciprocal; the albedo of
+//! `f_s = sqrt((n_u + 1)(n_v + 1))/(8 pi) (n·h)^(n_u cos² phi + n_v sin² phi) F(h·wo) / ((h·wo) max(cos_o, cos_i))`
+//! with Schlick's Fresnel factor `F(u) = k_s + (1 - k_s)(1 - u)⁵`, and below it, for what the coat lets pass, `f_d =
+//! 28 k_d/(23 pi) (1 - k_s) (1 - (1 - cos_o/2)⁵) (1 - (1 - cos_i/2)⁵)` (SPEC BRDF-19). Reciprocal; the albedo of
 //! `f_d` is k_d (1 - k_s) at most.
 
 use std::f32::consts::PI;

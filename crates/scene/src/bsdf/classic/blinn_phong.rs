@@ -1,7 +1,9 @@
-//! Phong's highlight from the half vector (Blinn 1977, "Models of Light Reflection for Computer Synthesized Pictures").
+//! Phong's highlight from the half vector (Blinn 1977, "Models of Light Reflection for Computer Synthesized
+//! Pictures").
 //!
-//! `f = k_d / pi + k_s c (n·h)ⁿ` with `c = (n + 2)(n + 4) / (8 pi (2^(-n/2) + n))`, which gives the highlight an albedo of
-//! exactly k_s along the normal (SPEC BRDF-15). An exponent n looks about like Phong's n / 4. Grazing light loses.
+//! `f = k_d / pi + k_s c (n·h)ⁿ` with `c = (n + 2)(n + 4) / (8 pi (2^(-n/2) + n))`, which gives the highlight an
+//! albedo of exactly k_s along the normal (SPEC BRDF-15). An exponent n looks about like Phong's n / 4. Grazing light
+//! loses.
 
 use std::f32::consts::FRAC_1_PI;
 

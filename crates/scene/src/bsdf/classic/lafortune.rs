@@ -1,10 +1,10 @@
 //! Generalised cosine lobes, made to fit measurements (Lafortune, Foo, Torrance and Greenberg 1997, "Non-Linear
 //! Approximation of Reflectance Functions").
 //!
-//! `f = k_d/pi + k_s sum_i max(0, C_x wo.x wi.x + C_y wo.y wi.y + C_z wo.z wi.z)^n` (SPEC BRDF-22). A lobe is Phong's about the
-//! direction `C wo`, which may be off the mirror direction, and grow or shrink with its length. `C = (-1, -1, 1)` is Phong's
-//! highlight without scale, `C_x = C_y` is isotropic, positive ones reflect back to the light. Reciprocal; energy depends on the
-//! coefficients: [`Lafortune::greatest_albedo`] tells.
+//! `f = k_d/pi + k_s sum_i max(0, C_x wo.x wi.x + C_y wo.y wi.y + C_z wo.z wi.z)^n` (SPEC BRDF-22). A lobe is Phong's
+//! about the direction `C wo`, which may be off the mirror direction, and grow or shrink with its length. `C = (-1,
+//! -1, 1)` is Phong's highlight without scale, `C_x = C_y` is isotropic, positive ones reflect back to the light.
+//! Reciprocal; energy depends on the coefficients: [`Lafortune::greatest_albedo`] tells.
 
 use std::f32::consts::{FRAC_1_PI, TAU};
 

@@ -1,10 +1,11 @@
 //! What the models have in common: a sum of lobes, each with its own way to sample it.
 //!
 //! A sample comes from one lobe, chosen by its share; its density is that of the mixture,
-//! `pdf = sum of share_k pdf_k`, and its weight `f |cos| / pdf` with the sum of all wanted lobes (one-sample multiple importance
-//! sampling with the balance heuristic; Veach 1997, section 9.2.4). The lobe that a sample *names* is drawn anew, by what
-//! each lobe contributes to f in that direction, so that light is split among path expressions by f and not by the
-//! choice of densities. Where lobes differ in colour, the split is right for the sum over the wavelengths.
+//! `pdf = sum of share_k pdf_k`, and its weight `f |cos| / pdf` with the sum of all wanted lobes (one-sample multiple
+//! importance sampling with the balance heuristic; Veach 1997, section 9.2.4). The lobe that a sample *names* is
+//! drawn anew, by what each lobe contributes to f in that direction, so that light is split among path expressions by
+//! f and not by the choice of densities. Where lobes differ in colour, the split is right for the sum over the
+//! wavelengths.
 
 use std::f32::consts::FRAC_1_PI;
 
@@ -39,8 +40,8 @@ impl Shares {
     }
 }
 
-/// A model as a sum of lobes. All directions are above the surface; those of `glossy_pdf` and `sample_glossy` are `wo`
-/// and `wi` of the path, those of `diffuse` and `glossy` where light goes `to` and comes `from`.
+/// A model as a sum of lobes. All directions are above the surface; those of `glossy_pdf` and `sample_glossy` are
+/// `wo` and `wi` of the path, those of `diffuse` and `glossy` where light goes `to` and comes `from`.
 pub(in crate::bsdf) trait Lobed {
     /// f of the diffuse-like lobe in 1/sr.
     fn diffuse(&self, _to: Vector3, _from: Vector3) -> Sampled {
@@ -186,8 +187,8 @@ pub(in crate::bsdf) fn sample(
     Some(BsdfSample { wi: to_side(wi), weight, pdf_w, pmf: 0.0, lobe, eta: 1.0, roughness })
 }
 
-/// Whether a sample counts as diffuse: by the parts of f there, with the low digits of a number whose high digits may be
-/// used already. Where f is 0 it is what was chosen.
+/// Whether a sample counts as diffuse: by the parts of f there, with the low digits of a number whose high digits may
+/// be used already. Where f is 0 it is what was chosen.
 #[inline]
 fn names_diffuse(diffuse: f32, glossy: f32, u: f32, chosen: bool) -> bool {
     if diffuse + glossy > 0.0 { (u * 4096.0).fract() * (diffuse + glossy) < diffuse } else { chosen }

@@ -1,9 +1,10 @@
-//! The reflection models of the literature between Phong 1975 and Schlick 1993 and after: opaque surfaces that look the
-//! same from both sides, each a sum of a diffuse-like lobe, a glossy one and perhaps a mirror.
+//! The reflection models of the literature between Phong 1975 and Schlick 1993 and after: opaque surfaces that look
+//! the same from both sides, each a sum of a diffuse-like lobe, a glossy one and perhaps a mirror.
 //!
-//! They sit behind one variant of [`BsdfKind`](super::BsdfKind) and out of line, so that the models which most scenes are
-//! made of stay as quick as without them. What they share is in [`lobed`]: one-sample mixtures of the lobes' densities.
-//! Which laws a model breaks is said in its file and stated in the [catalogue](super::catalogue) and asserted in tests.
+//! They sit behind one variant of [`BsdfKind`](super::BsdfKind) and out of line, so that the models which most scenes
+//! are made of stay as quick as without them. What they share is in [`lobed`]: one-sample mixtures of the lobes'
+//! densities. Which laws a model breaks is said in its file and stated in the [catalogue](super::catalogue) and
+//! asserted in tests.
 
 pub(super) mod lobed;
 mod powers;
@@ -42,8 +43,8 @@ pub use ward::{Ward, WardForm};
 
 /// A model of the literature, in the shading frame.
 ///
-/// To add one: write a file with a plain struct that is `Lobed`, add a variant here, follow the compiler, and add lines
-/// to `catalogue.rs`.
+/// To add one: write a file with a plain struct that is `Lobed`, add a variant here, follow the compiler, and add
+/// lines to `catalogue.rs`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Classic {
     /// Phong 1975, normalised by Lewis 1993 or not.

@@ -1,15 +1,16 @@
-//! Rough matte surfaces: clay, plaster, the moon (Oren and Nayar 1994, "Generalization of Lambert's Reflectance Model").
+//! Rough matte surfaces: clay, plaster, the moon (Oren and Nayar 1994, "Generalization of Lambert's Reflectance
+//! Model").
 //!
-//! The surface is made of long symmetric V-grooves of all directions whose walls are Lambertian; their slope angles have the
-//! standard deviation sigma. With the larger and smaller polar angle `alpha` and `beta`, the difference of azimuth `phi`
-//! and `s = sigma²`, the qualitative model keeps what matters most (SPEC BRDF-18):
-//! `f = R/pi (A + B max(0, cos phi) sin alpha tan beta)`, `A = 1 - s / (2 (s + 0.33))`, `B = 0.45 s / (s + 0.09)`.
+//! The surface is made of long symmetric V-grooves of all directions whose walls are Lambertian; their slope angles
+//! have the standard deviation sigma. With the larger and smaller polar angle `alpha` and `beta`, the difference of
+//! azimuth `phi` and `s = sigma²`, the qualitative model keeps what matters most (SPEC BRDF-18): `f = R/pi (A + B
+//! max(0, cos phi) sin alpha tan beta)`, `A = 1 - s / (2 (s + 0.33))`, `B = 0.45 s / (s + 0.09)`.
 //!
 //! The full model fits masking better and adds light that two walls reflect (equations 26 to 29 of the paper):
 //! `f1 = R/pi (A + C2 cos phi tan beta + C3 (1 - |cos phi|) tan((alpha + beta)/2))`,
 //! `f2 = 0.17 R²/pi s/(s + 0.13) (1 - cos phi (2 beta/pi)²)`, with `C2 = B (sin alpha - [cos phi < 0] (2 beta/pi)³)`,
-//! `C3 = 0.125 s/(s + 0.09) (4 alpha beta/pi²)²`. The fit is negative where dark surfaces are seen and lit grazing from
-//! opposite sides; there it counts as 0. Both are reciprocal.
+//! `C3 = 0.125 s/(s + 0.09) (4 alpha beta/pi²)²`. The fit is negative where dark surfaces are seen and lit grazing
+//! from opposite sides; there it counts as 0. Both are reciprocal.
 
 use std::f32::consts::{FRAC_1_PI, FRAC_2_PI};
 

@@ -1,12 +1,12 @@
 //! Phong's highlight around the mirror direction (Phong 1975, "Illumination for Computer Generated Pictures").
 //!
 //! With alpha between `wi` and the mirror image of `wo`, Lewis's form is a BRDF that obeys the laws,
-//! `f = k_d / pi + k_s (n + 2) / (2 pi) cosⁿ alpha` with `k_d + k_s <= 1` (Lewis 1993, "Making Shaders More Physically
-//! Plausible"; SPEC BRDF-14); its highlight reflects k_s along the normal and less elsewhere.
+//! `f = k_d / pi + k_s (n + 2) / (2 pi) cosⁿ alpha` with `k_d + k_s <= 1` (Lewis 1993, "Making Shaders More
+//! Physically Plausible"; SPEC BRDF-14); its highlight reflects k_s along the normal and less elsewhere.
 //!
 //! Phong's illumination equation `I = I_l (k_d cos_i + k_s cosⁿ alpha)` (SPEC BRDF-12, BRDF-13) has no cosine at its
-//! highlight. As a BRDF it must divide by it: `f = (k_d + k_s cosⁿ alpha / cos_i) / pi`, where a light of irradiance `pi I_l`
-//! stands for the light of the equation. It breaks two laws: it is not reciprocal, and light that comes in
+//! highlight. As a BRDF it must divide by it: `f = (k_d + k_s cosⁿ alpha / cos_i) / pi`, where a light of irradiance
+//! `pi I_l` stands for the light of the equation. It breaks two laws: it is not reciprocal, and light that comes in
 //! grazing leaves multiplied by up to `2 k_s / ((n + 1) cos_i)`; so does any light for n < 1. Light carriers
 //! (importance) get the adjoint, so that all methods agree.
 

@@ -1,13 +1,13 @@
 //! Brushed metal as rows of parallel cylinders (Poulin and Fournier 1990, "A Model for Anisotropic Reflection").
 //!
-//! Cylinders of radius 1 lie along the first tangent, `spacing` apart, and rise by `height` above a flat floor (SPEC BRDF-20).
-//! In the plane across them a facet at the angle `a` from the top has the normal `n(a)`. Each reflects as Blinn's model
-//! `b(n) = k_d/pi + k_s c (n·h)ⁿ`, as far as it is seen and lit past its neighbours along straight lines:
-//! `f = 1/(spacing cos_o cos_i) (∫ b(n(a)) (n(a)·wo) (n(a)·wi) da + floor b(n) cos_o cos_i)`
-//! over the angles, and the width of floor, that are both seen and lit. What bounces between cylinders is lost.
+//! Cylinders of radius 1 lie along the first tangent, `spacing` apart, and rise by `height` above a flat floor (SPEC
+//! BRDF-20). In the plane across them a facet at the angle `a` from the top has the normal `n(a)`. Each reflects as
+//! Blinn's model `b(n) = k_d/pi + k_s c (n·h)ⁿ`, as far as it is seen and lit past its neighbours along straight
+//! lines: `f = 1/(spacing cos_o cos_i) (∫ b(n(a)) (n(a)·wo) (n(a)·wi) da + floor b(n) cos_o cos_i)` over the angles,
+//! and the width of floor, that are both seen and lit. What bounces between cylinders is lost.
 //!
-//! Reciprocal, and no brighter than Blinn's model. The integral over the highlight is Gauss's of 16 points where `(n·h)ⁿ`
-//! is not negligible; all others are exact. Directions below 0.006° count as at 0.006°.
+//! Reciprocal, and no brighter than Blinn's model. The integral over the highlight is Gauss's of 16 points where
+//! `(n·h)ⁿ` is not negligible; all others are exact. Directions below 0.006° count as at 0.006°.
 
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2};
 

@@ -62,8 +62,8 @@ pub(super) fn widened_alpha(alpha: f32) -> f32 {
     Microfacets::new(alpha, alpha).regularized().alpha().0
 }
 
-/// Blinn's `(n + 2)(n + 4) / (8 pi (2^(-n/2) + n))`: with it `cosⁿ` of the half vector has albedo 1 at normal incidence
-/// [SPEC BRDF-15].
+/// Blinn's `(n + 2)(n + 4) / (8 pi (2^(-n/2) + n))`: with it `cosⁿ` of the half vector has albedo 1 at normal
+/// incidence [SPEC BRDF-15].
 #[inline]
 pub(super) fn blinn_scale(n: f32) -> f32 {
     (n + 2.0) * (n + 4.0) / (8.0 * PI * (exp(-0.5 * std::f32::consts::LN_2 * n) + n))

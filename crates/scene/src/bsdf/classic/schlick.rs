@@ -1,15 +1,16 @@
-//! Schlick's model between mirror and matte, made of rational functions (Schlick 1993, "A Customizable Reflectance Model for
-//! Everyday Rendering").
+//! Schlick's model between mirror and matte, made of rational functions (Schlick 1993, "A Customizable Reflectance
+//! Model for Everyday Rendering").
 //!
-//! With `u = wo·h`, `t = n·h`, `v` and `v'` the cosines of both directions and w the cosine between first tangent and the half
-//! vector's projection (SPEC BRDF-23 to BRDF-28):
-//! `f = S(u) (d/pi + g D + s mirror)`, `S(u) = F0 + (1 - F0)(1 - u)⁵`, `D = G(v) G(v') Z(t) A(w) / (4 pi v v')`,
-//! `Z = r/(1 + r t² - t²)²`, `A = sqrt(p/(p² - p² w² + w²))`, `G(v) = v/(r - r v + v)`, for roughness r (sigma in
-//! the paper) and isotropy p (psi). The weights follow from r: `g = 4 r (1 - r)`, and the rest is `s` below 0.5, `d` above.
+//! With `u = wo·h`, `t = n·h`, `v` and `v'` the cosines of both directions and w the cosine between first tangent and
+//! the half vector's projection (SPEC BRDF-23 to BRDF-28): `f = S(u) (d/pi + g D + s mirror)`, `S(u) = F0 + (1 -
+//! F0)(1 - u)⁵`, `D = G(v) G(v') Z(t) A(w) / (4 pi v v')`, `Z = r/(1 + r t² - t²)²`, `A = sqrt(p/(p² - p² w² + w²))`,
+//! `G(v) = v/(r - r v + v)`, for roughness r (sigma in the paper) and isotropy p (psi). The weights follow from r: `g
+//! = 4 r (1 - r)`, and the rest is `s` below 0.5, `d` above.
 //!
-//! As printed, D has the further term `(1 - G G')/(4 pi v v')` for light that is reflected again after obstruction, which makes
-//! light: at 80° and full weight the albedo is 2.0 for r = 0.1 and 2.8 for r = 1. [`SchlickForm::Printed`] has it.
-//! `Z/pi` is GGX with `alpha² = r`. The mean of A over azimuths is 1 for p = 1 alone: anisotropy loses light.
+//! As printed, D has the further term `(1 - G G')/(4 pi v v')` for light that is reflected again after obstruction,
+//! which makes light: at 80° and full weight the albedo is 2.0 for r = 0.1 and 2.8 for r = 1.
+//! [`SchlickForm::Printed`] has it. `Z/pi` is GGX with `alpha² = r`. The mean of A over azimuths is 1 for p = 1
+//! alone: anisotropy loses light.
 
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 

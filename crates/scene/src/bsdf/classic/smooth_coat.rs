@@ -1,10 +1,10 @@
 //! A smooth clear coat over a diffuse base, with all bounces between them: glazed pottery, plastic.
 //!
-//! The coat reflects F as a mirror. What passes is made even by the base of albedo R, and of it the coat sends back the share
-//! `F_in`, again and again; the series sums to
-//! `f = R (1 - F(cos_o)) (1 - F(cos_i)) / (pi eta² (1 - R F_in))` (Orchard 1969, "Reflection and Transmission of Light by Diffusing
-//! Suspensions"; Wolff 1994, "Diffuse-Reflectance Model for Smooth Dielectric Surfaces"). With the mean reflectance from
-//! outside, `F_out = 2 ∫ F cos d cos`, that from inside is `F_in = 1 - (1 - F_out)/eta²`, so that a white base loses nothing.
+//! The coat reflects F as a mirror. What passes is made even by the base of albedo R, and of it the coat sends back
+//! the share `F_in`, again and again; the series sums to `f = R (1 - F(cos_o)) (1 - F(cos_i)) / (pi eta² (1 - R
+//! F_in))` (Orchard 1969, "Reflection and Transmission of Light by Diffusing Suspensions"; Wolff 1994,
+//! "Diffuse-Reflectance Model for Smooth Dielectric Surfaces"). With the mean reflectance from outside, `F_out = 2 ∫
+//! F cos d cos`, that from inside is `F_in = 1 - (1 - F_out)/eta²`, so that a white base loses nothing.
 //!
 //! Reciprocal, keeps energy. It is what `coateddiffuse` estimates by walks, for a smooth coat without thickness.
 

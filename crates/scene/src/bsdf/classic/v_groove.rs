@@ -1,11 +1,11 @@
-//! Mirrors in V-shaped grooves, the first models of microfacets (Torrance and Sparrow 1967, "Theory for Off-Specular Reflection
-//! From Roughened Surfaces"; Cook and Torrance 1982, "A Reflectance Model for Computer Graphics").
+//! Mirrors in V-shaped grooves, the first models of microfacets (Torrance and Sparrow 1967, "Theory for Off-Specular
+//! Reflection From Roughened Surfaces"; Cook and Torrance 1982, "A Reflectance Model for Computer Graphics").
 //!
-//! `f = k_d/pi + s D(h) F(wo·h) G / (4 cos_o cos_i)` (SPEC BRDF-16, BRDF-17), where each facet faces one of equal slope, so
-//! that `G = min(1, 2 (n·h) cos_o / (wo·h), 2 (n·h) cos_i / (wo·h))`. The facets' angle `delta` from the normal is
-//! distributed as Torrance and Sparrow have it, `D = c exp(-delta²/m²)`, or after Beckmann, as Cook and Torrance,
-//! `D = exp(-tan² delta / m²) / (pi m² cos⁴ delta)`; both are scaled to `∫ D cos delta dw = 1`. (The paper of 1982 has pi where
-//! 4 is right.) Reciprocal; what bounces twice in a groove is lost.
+//! `f = k_d/pi + s D(h) F(wo·h) G / (4 cos_o cos_i)` (SPEC BRDF-16, BRDF-17), where each facet faces one of equal
+//! slope, so that `G = min(1, 2 (n·h) cos_o / (wo·h), 2 (n·h) cos_i / (wo·h))`. The facets' angle `delta` from the
+//! normal is distributed as Torrance and Sparrow have it, `D = c exp(-delta²/m²)`, or after Beckmann, as Cook and
+//! Torrance, `D = exp(-tan² delta / m²) / (pi m² cos⁴ delta)`; both are scaled to `∫ D cos delta dw = 1`. (The paper
+//! of 1982 has pi where 4 is right.) Reciprocal; what bounces twice in a groove is lost.
 
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 use std::sync::OnceLock;
@@ -86,8 +86,8 @@ impl VGroove {
         }
     }
 
-    /// Density of sampled half vectors in 1/sr: `D cos delta` for Beckmann's, `delta exp(-delta²/m²)` over `sin delta` for
-    /// the Gaussian.
+    /// Density of sampled half vectors in 1/sr: `D cos delta` for Beckmann's, `delta exp(-delta²/m²)` over `sin
+    /// delta` for the Gaussian.
     #[inline]
     fn half_pdf(&self, h: Vector3) -> f32 {
         match self.distribution {

@@ -1,15 +1,15 @@
-//! Facets whose slopes are Gaussian (Beckmann and Spizzichino 1963, "The Scattering of Electromagnetic Waves from Rough
-//! Surfaces").
+//! Facets whose slopes are Gaussian (Beckmann and Spizzichino 1963, "The Scattering of Electromagnetic Waves from
+//! Rough Surfaces").
 //!
-//! `D = exp(-(x²/ax² + y²/ay²)/z²) / (pi ax ay z⁴)`. With `s(w) = sqrt(ax² x² + ay² y²)`, `c = |z|` and `a = c/s`, the facets that
-//! face w have the projected area `p(w) = c (1 + Lambda) = c (1 + erf a)/2 + s exp(-a²)/(2 sqrt(pi))`, of which c is seen
-//! (Smith 1967, "Geometrical Shadowing of a Random Rough Surface"; Heitz 2014, "Understanding the Masking-Shadowing
-//! Function in Microfacet-Based BRDFs"). So `G1/c = 1/p`, and with correlated heights
-//! `G/(c_o c_i) = 1/(c_i p_o + c_o p_i - c_o c_i)`.
+//! `D = exp(-(x²/ax² + y²/ay²)/z²) / (pi ax ay z⁴)`. With `s(w) = sqrt(ax² x² + ay² y²)`, `c = |z|` and `a = c/s`,
+//! the facets that face w have the projected area `p(w) = c (1 + Lambda) = c (1 + erf a)/2 + s exp(-a²)/(2
+//! sqrt(pi))`, of which c is seen (Smith 1967, "Geometrical Shadowing of a Random Rough Surface"; Heitz 2014,
+//! "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs"). So `G1/c = 1/p`, and with correlated
+//! heights `G/(c_o c_i) = 1/(c_i p_o + c_o p_i - c_o c_i)`.
 //!
-//! Visible normals: where alpha is 1, the slope towards the viewer has the density `(cos - x sin) exp(-x²)/sqrt(pi)` over p,
-//! for `x < cos/sin`, and the other slope is Gaussian; Newton's method inverts the first (Heitz and d'Eon 2014, "Importance Sampling
-//! Microfacet-Based BSDFs using the Distribution of Visible Normals").
+//! Visible normals: where alpha is 1, the slope towards the viewer has the density `(cos - x sin) exp(-x²)/sqrt(pi)`
+//! over p, for `x < cos/sin`, and the other slope is Gaussian; Newton's method inverts the first (Heitz and d'Eon
+//! 2014, "Importance Sampling Microfacet-Based BSDFs using the Distribution of Visible Normals").
 
 use std::f32::consts::{FRAC_1_SQRT_2, PI};
 

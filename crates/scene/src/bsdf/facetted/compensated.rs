@@ -1,10 +1,10 @@
 //! Rough metal with the light that bounces several times among its facets.
 //!
-//! Of what facets without loss do not reflect at once, `1 - E`, everything leaves later, about evenly. With E of both directions
-//! and its mean, `f_ms = F_ms (1 - E(wo)) (1 - E(wi)) / (pi (1 - E_avg))` is reciprocal and makes up for the loss, and what
-//! metal absorbs at each further bounce gives `F_ms = F_avg² E_avg / (1 - F_avg (1 - E_avg))` (Kulla and Conty 2017, "Revisiting
-//! Physically Based Shading at Imageworks"). For anisotropic facets E is that of the alpha along each direction, which is
-//! right to about a hundredth.
+//! Of what facets without loss do not reflect at once, `1 - E`, everything leaves later, about evenly. With E of both
+//! directions and its mean, `f_ms = F_ms (1 - E(wo)) (1 - E(wi)) / (pi (1 - E_avg))` is reciprocal and makes up for
+//! the loss, and what metal absorbs at each further bounce gives `F_ms = F_avg² E_avg / (1 - F_avg (1 - E_avg))`
+//! (Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks"). For anisotropic facets E is that of
+//! the alpha along each direction, which is right to about a hundredth.
 
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2};
 

@@ -1,9 +1,9 @@
 //! How much light leaves a surface of mirror facets after one bounce, tabulated once from our own integrals.
 //!
-//! `E(cos, alpha)` is the albedo of lossless facets towards a direction, `E_avg(alpha) = 2 ∫ E cos d cos` its mean; B is the
-//! same for facets that reflect `(1 - wo·h)⁵`, so that those of Schlick's fit reflect `F0 (E - B) + B`. The tables
-//! are even in `sqrt(cos)`, which is how E rises from grazing, and in `sqrt(alpha)`; between entries they are bilinear, and the
-//! mean is that of the interpolated function.
+//! `E(cos, alpha)` is the albedo of lossless facets towards a direction, `E_avg(alpha) = 2 ∫ E cos d cos` its mean; B
+//! is the same for facets that reflect `(1 - wo·h)⁵`, so that those of Schlick's fit reflect `F0 (E - B) + B`. The
+//! tables are even in `sqrt(cos)`, which is how E rises from grazing, and in `sqrt(alpha)`; between entries they are
+//! bilinear, and the mean is that of the interpolated function.
 
 use std::sync::OnceLock;
 

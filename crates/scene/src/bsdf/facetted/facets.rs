@@ -24,8 +24,8 @@ pub trait Facets: Copy {
     /// A normal visible from `wo`, in the upper hemisphere.
     fn sample_visible_normal(self, wo: Vector3, u: Point2) -> Vector3;
 
-    /// `D(wm) G(wo, wi) / (4 |cos_o| |cos_i|)`, and the density in 1/sr of `wi` if visible normals are sampled, where `wm`
-    /// reflects `wo` to `wi`.
+    /// `D(wm) G(wo, wi) / (4 |cos_o| |cos_i|)`, and the density in 1/sr of `wi` if visible normals are sampled, where
+    /// `wm` reflects `wo` to `wi`.
     #[inline]
     fn reflection(self, wo: Vector3, wi: Vector3, wm: Vector3) -> (f32, f32) {
         let pdf_w = self.visible_normal_pdf(wo, wm) / (4.0 * wo.dot(wm).abs());

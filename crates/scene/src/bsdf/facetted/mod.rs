@@ -1,8 +1,8 @@
-//! Rough conductors and dielectrics beyond those which most scenes have: Beckmann's facets beside GGX, Schlick's fit beside
-//! Fresnel's equations, and compensation for the light that bounces several times among facets.
+//! Rough conductors and dielectrics beyond those which most scenes have: Beckmann's facets beside GGX, Schlick's fit
+//! beside Fresnel's equations, and compensation for the light that bounces several times among facets.
 //!
-//! They sit behind one variant of [`BsdfKind`](super::BsdfKind) and out of line, so that GGX by Fresnel's equations stays as quick
-//! as without them. What facets there are is a parameter of [`Conductor`] and [`Dielectric`].
+//! They sit behind one variant of [`BsdfKind`](super::BsdfKind) and out of line, so that GGX by Fresnel's equations
+//! stays as quick as without them. What facets there are is a parameter of [`Conductor`] and [`Dielectric`].
 
 mod beckmann;
 mod compensated;

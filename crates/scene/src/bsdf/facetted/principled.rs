@@ -1,14 +1,15 @@
-//! The metallic-roughness model of glTF 2.0 (Khronos 2021, "glTF 2.0 Specification", appendix B), made to keep the laws.
+//! The metallic-roughness model of glTF 2.0 (Khronos 2021, "glTF 2.0 Specification", appendix B), made to keep the
+//! laws.
 //!
-//! A surface is metal of the base colour to the share m, else a diffuse base under a rough coat of reflectance F0 = 0.04.
-//! Facets are those of GGX with `alpha = roughness²`, and Fresnel is Schlick's `F = F0 + (1 - F0)(1 - wo·h)⁵`. Since F is
-//! linear in F0, one lobe of `F0 = (1 - m) 0.04 + m base` serves both; later bounces among facets are added as in
-//! [`CompensatedConductor`](super::CompensatedConductor).
+//! A surface is metal of the base colour to the share m, else a diffuse base under a rough coat of reflectance F0 =
+//! 0.04. Facets are those of GGX with `alpha = roughness²`, and Fresnel is Schlick's `F = F0 + (1 - F0)(1 - wo·h)⁵`.
+//! Since F is linear in F0, one lobe of `F0 = (1 - m) 0.04 + m base` serves both; later bounces among facets are
+//! added as in [`CompensatedConductor`](super::CompensatedConductor).
 //!
-//! glTF leaves open how diffuse light is dimmed by the coat. Here it is what the coat does not reflect, on its way in and
-//! out: `f_d = (1 - m) base (1 - S(wo)) (1 - S(wi)) / (pi (1 - S_avg))`, where S is the albedo of the coat, `F0 (E - B) + B`
-//! and later bounces, from tables of the model's own integrals (Kulla and Conty 2017). That is reciprocal, and a white
-//! surface loses nothing.
+//! glTF leaves open how diffuse light is dimmed by the coat. Here it is what the coat does not reflect, on its way in
+//! and out: `f_d = (1 - m) base (1 - S(wo)) (1 - S(wi)) / (pi (1 - S_avg))`, where S is the albedo of the coat, `F0
+//! (E - B) + B` and later bounces, from tables of the model's own integrals (Kulla and Conty 2017). That is
+//! reciprocal, and a white surface loses nothing.
 
 use std::f32::consts::FRAC_1_PI;
 
@@ -46,7 +47,8 @@ fn later_bounces(f0: f32, mean: f32) -> f32 {
 }
 
 impl Principled {
-    /// Of the base colour in [0, 1], the share of metal, the roughness whose square is alpha, and the index of the coat.
+    /// Of the base colour in [0, 1], the share of metal, the roughness whose square is alpha, and the index of the
+    /// coat.
     #[must_use]
     pub fn new(base: Sampled, metallic: f32, roughness: f32, eta: f32) -> Self {
         // A mirror would be another lobe; this is as narrow as pictures can tell.

@@ -30,8 +30,8 @@ fn white_phong(form: PhongForm, exponent: f32) -> BsdfKind {
     BsdfKind::Classic(Classic::Phong(Phong { kd: Sampled::ZERO, ks: Sampled::ONE, exponent, form }))
 }
 
-/// SPEC BRDF-12, BRDF-13: a light of irradiance pi I shows `k_d cos + k_s cosⁿ alpha`, with 1 in the mirror direction and
-/// 0 beyond 90° from it.
+/// SPEC BRDF-12, BRDF-13: a light of irradiance pi I shows `k_d cos + k_s cosⁿ alpha`, with 1 in the mirror direction
+/// and 0 beyond 90° from it.
 #[test]
 fn phong_shows_his_equation() {
     let kind = phong(PhongForm::Illumination, 20.0);
@@ -44,9 +44,9 @@ fn phong_shows_his_equation() {
     }
 }
 
-/// SPEC BRDF-13: what Phong's equation breaks. Its highlight shows an even surrounding `2 k_s / (n + 1)` times as bright along
-/// the normal, twice for n = 0; of grazing light it makes more than arrives, 29 times at 89°; and exchanging both
-/// directions changes it by the ratio of their cosines.
+/// SPEC BRDF-13: what Phong's equation breaks. Its highlight shows an even surrounding `2 k_s / (n + 1)` times as
+/// bright along the normal, twice for n = 0; of grazing light it makes more than arrives, 29 times at 89°; and
+/// exchanging both directions changes it by the ratio of their cosines.
 #[test]
 fn phongs_equation_breaks_laws() {
     let normal = direction(0.0, 0.0);
@@ -78,7 +78,8 @@ fn normalised_highlights_reflect_their_strength() {
     }
 }
 
-/// SPEC BRDF-15: Blinn's highlight with four times the exponent falls off as Phong's: the half vector turns half as far.
+/// SPEC BRDF-15: Blinn's highlight with four times the exponent falls off as Phong's: the half vector turns half as
+/// far.
 #[test]
 fn blinn_needs_four_times_the_exponent() {
     let wi = direction(30.0, 0.0);
@@ -128,8 +129,8 @@ fn albedo_at(kind: &BsdfKind, angle: f32) -> f64 {
     quadrature_albedo(kind, direction(angle, 0.3), TransportMode::Radiance)
 }
 
-/// SPEC BRDF-18: with even walls it is Lambert's model, and a rough ball lit from the camera looks flat: its edge is nearly as
-/// bright as its middle, where Lambert's edge is dark.
+/// SPEC BRDF-18: with even walls it is Lambert's model, and a rough ball lit from the camera looks flat: its edge is
+/// nearly as bright as its middle, where Lambert's edge is dark.
 #[test]
 fn rough_matte_surfaces_look_flat() {
     for form in [OrenNayarForm::Full, OrenNayarForm::Qualitative] {
@@ -194,7 +195,8 @@ fn wards_fix_keeps_the_albedo_even() {
     }
 }
 
-/// SPEC BRDF-21, BRDF-19, BRDF-20, BRDF-25: anisotropic highlights turn with the tangent, and spread where they should.
+/// SPEC BRDF-21, BRDF-19, BRDF-20, BRDF-25: anisotropic highlights turn with the tangent, and spread where they
+/// should.
 #[test]
 fn highlights_turn_with_the_tangent() {
     let colors = (Sampled::ZERO, Sampled::ONE);
@@ -239,8 +241,9 @@ fn flat_cylinders_are_blinns_floor() {
     }
 }
 
-/// SPEC BRDF-20: what the cylinders send to the eye is the mean over places, found by casting straight lines at random in the
-/// plane across them; and the integral over the highlight is the exact one where the highlight is Lambert's.
+/// SPEC BRDF-20: what the cylinders send to the eye is the mean over places, found by casting straight lines at
+/// random in the plane across them; and the integral over the highlight is the exact one where the highlight is
+/// Lambert's.
 #[test]
 fn cylinders_hide_each_other() {
     for (spacing, height) in [(2.0_f32, 1.0_f32), (4.0, 0.6), (1.0, 0.5)] {
@@ -269,8 +272,8 @@ fn cylinders_hide_each_other() {
     }
 }
 
-/// The cosine of light from `wi` on the place that a line of sight from `wo`, which crosses the plane of the tops at `x`,
-/// meets; 0 where a neighbour is in the light's way.
+/// The cosine of light from `wi` on the place that a line of sight from `wo`, which crosses the plane of the tops at
+/// `x`, meets; 0 where a neighbour is in the light's way.
 fn cylinder_ray(x: f32, wo: Vector3, wi: Vector3, spacing: f32, height: f32) -> f64 {
     let floor = (1.0 - height).max((1.0 - (0.5 * spacing).min(1.0).powi(2)).sqrt());
     let (top_y, top_z) = (x, 1.0);
@@ -320,8 +323,8 @@ fn lafortunes_lobe_may_be_phongs() {
     check(f64::from(Lafortune::greatest_albedo(lobes)), 1.0, 0.01);
 }
 
-/// SPEC BRDF-16, BRDF-17: the facets of both distributions cover the surface: `∫ D cos dw = 1`. Seen from above, with little
-/// roughness, nothing masks, and f is `D / 4`.
+/// SPEC BRDF-16, BRDF-17: the facets of both distributions cover the surface: `∫ D cos dw = 1`. Seen from above, with
+/// little roughness, nothing masks, and f is `D / 4`.
 #[test]
 fn grooves_cover_the_surface() {
     for distribution in [FacetDistribution::Gaussian, FacetDistribution::Beckmann] {
@@ -398,8 +401,8 @@ fn schlicks_factors() {
     check(f(SchlickForm::Printed), weight * (once + 1.0 - g(v) * g(v2)) / four_pi_vv, 1e-6);
 }
 
-/// SPEC BRDF-26: as printed the glossy mode reflects 2 to 2.8 times what arrives at 80°, up to 28 times at 89°; without the
-/// term for light reflected again 25 to 86 % at 80°.
+/// SPEC BRDF-26: as printed the glossy mode reflects 2 to 2.8 times what arrives at 80°, up to 28 times at 89°;
+/// without the term for light reflected again 25 to 86 % at 80°.
 #[test]
 fn schlicks_printed_form_makes_light() {
     for (roughness, printed, safe) in [(0.1, 2.10, 0.84), (0.5, 2.80, 0.447)] {

@@ -117,8 +117,8 @@ fn schlicks_fit_may_be_chosen() {
     }
 }
 
-/// All bounces: a white metal keeps everything within 1 % at any roughness and angle; a brushed one within 3 %. Copper
-/// gains what its colour leaves of the later bounces, more in red than in blue.
+/// All bounces: a white metal keeps everything within 1 % at any roughness and angle; a brushed one within 3 %.
+/// Copper gains what its colour leaves of the later bounces, more in red than in blue.
 #[test]
 fn all_bounces_fill_the_furnace() {
     let albedo = |metal: Conductor, shape, angle: f32, i: usize| {
