@@ -279,7 +279,7 @@ fn times_come_from_the_clock() {
 fn scene_size_is_tabled_and_drawn() {
     let study = small_scene_size();
     check_csv(&study.csv(), 2, 7 * 3);
-    let texts = ["steps of a ray", "building", "fractal: shadow", "10³"];
+    let texts = ["steps of a ray", "building", "fractal: shadow", "10000"];
     check_svg(&study.svg(), &texts, 14, 2 * 3 * 7 + 7);
     assert_eq!(study.summary().lines().count(), 1 + 2 * 7);
 }
