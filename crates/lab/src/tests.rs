@@ -7,6 +7,7 @@ use roxmltree::Document;
 use crate::convergence::{ErrorCurve, Experiment};
 use crate::estimator::LightChoice;
 use crate::light_size::{Room, SizeCurve, SizePoint, WAYS};
+use crate::plot::{Axes, Mark, Panel, Series, draw};
 use crate::scene_size::{KINDS, Laws, RayCost};
 use crate::{
     Convergence, ConvergenceSettings, Estimator, LightSize, LightSizeSettings, PixelSettings, PixelStudy,
@@ -381,4 +382,19 @@ fn light_size_is_tabled_and_drawn() {
         ["metal room at 64 samples per pixel", "at 512 rays per pixel", "side of the lamp", "scattering"];
     check_svg(&study.svg(), &texts, 2 * 6, 2 * 18);
     assert_eq!(study.summary().lines().count(), 4);
+}
+
+/// Labels of an axis over many decades are powers of ten, which do not run into each other.
+#[test]
+fn axes_over_many_decades_have_powers_of_ten() {
+    let panel = |end: f64| {
+        let series = vec![Series {
+            name: String::new(),
+            points: vec![[1.0, 1.0], [end, 2.0]],
+            mark: Mark::LineAndDots,
+        }];
+        draw(&[Panel { axes: Axes::SemiLogarithmic, series, ..Panel::default() }])
+    };
+    check_svg(&panel(1e3), &["100", "200"], 1, 2);
+    check_svg(&panel(1e6), &["10⁰", "10³", "10⁶"], 1, 2);
 }
