@@ -5,11 +5,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use etendue_image::Texels;
+use etendue_scene::bsdf::tabulated::BrdfGrid;
 use etendue_scene::document::{Entity, ShapeEntity, Value};
 use etendue_scene::{Assets, Diagnostics, Document, Span};
 use etendue_spectrum::{known_but_missing, named_spectrum};
 use rayon::prelude::*;
 
+use crate::brdf_table::read_brdf_table;
 use crate::file::read_file;
 use crate::images::read_texels;
 use crate::ply::{PlyMesh, read_ply};
@@ -24,6 +26,7 @@ enum Kind {
     Mesh,
     Image,
     Spectrum,
+    Brdf,
 }
 
 /// Files by kind and name, with the first parameter that names each.
@@ -34,12 +37,13 @@ enum Loaded {
     Mesh(PlyMesh),
     Image(Texels),
     Spectrum(Vec<[f32; 2]>),
+    Brdf(BrdfGrid),
 }
 
 /// Reads all files that parameters of the document name; what cannot be read is an error at the parameter.
 ///
-/// Known are the meshes of `plymesh`, the images of `imagemap` textures, of lights and of normal maps, and measured
-/// spectra. File names are relative to [`Document::base_directory`].
+/// Known are the meshes of `plymesh`, the images of `imagemap` textures, of lights and of normal maps, measured
+/// spectra, and the tables of `tabulated`. File names are relative to [`Document::base_directory`].
 #[must_use]
 pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
     let wanted: Vec<_> = wanted_files(document).into_iter().collect();
@@ -63,6 +67,9 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
             Ok(Loaded::Spectrum(samples)) => {
                 assets.spectra.insert(name, samples);
             }
+            Ok(Loaded::Brdf(grid)) => {
+                assets.brdfs.insert(name, grid);
+            }
             Err(message) => {
                 let error = diagnostics.error(span, message);
                 if Path::new(&name).is_relative() && !document.base_directory.join(&name).exists() {
@@ -83,6 +90,7 @@ fn load_file(kind: Kind, path: &Path) -> Result<Loaded, String> {
     let bytes = read_file(path).map_err(|error| error.to_string())?;
     match kind {
         Kind::Mesh => read_ply(&bytes).map(Loaded::Mesh).map_err(|error| in_file(error.to_string())),
+        Kind::Brdf => read_brdf_table(&bytes).map(Loaded::Brdf).map_err(|error| in_file(error.to_string())),
         _ => read_spd(&bytes).map(Loaded::Spectrum).map_err(|error| in_file(error.to_string())),
     }
 }
@@ -108,6 +116,9 @@ fn wanted_files(document: &Document) -> Wanted {
     }
     for material in &document.materials {
         add(&mut wanted, Kind::Image, &material.entity, "normalmap");
+        if material.entity.type_name == "tabulated" {
+            add(&mut wanted, Kind::Brdf, &material.entity, "filename");
+        }
         add_spectra(&mut wanted, &material.entity);
     }
     let camera = document.camera.as_ref().map(|camera| &camera.entity);

@@ -1,10 +1,11 @@
-//! Bytes to values and back: scene files, meshes, images and measured spectra. The only crate below the front ends
+//! Bytes to values and back: scene files, meshes, images, measured spectra and tables. The only crate below the front ends
 //! that opens files.
 //!
 //! Reading a scene has two steps: [`read_pbrt`] makes a [`Document`](etendue_scene::Document), which names files, and
 //! [`load_assets`] reads these.
 
 pub mod assets;
+pub mod brdf_table;
 pub mod checkpoint;
 pub mod error;
 pub mod images;
@@ -15,6 +16,7 @@ pub mod spd;
 mod file;
 
 pub use assets::load_assets;
+pub use brdf_table::read_brdf_table;
 pub use error::FileError;
 pub use file::read_file;
 pub use images::{ImageError, read_image, read_texels, write_image};

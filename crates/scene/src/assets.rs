@@ -1,4 +1,4 @@
-//! Contents of the files that a document names: meshes, images and measured spectra.
+//! Contents of the files that a document names: meshes, images, measured spectra and tables of BRDFs.
 //!
 //! The scene is built from a [`Document`](crate::Document) and its `Assets`, so that building opens no file.
 //! Everything is keyed by the file name exactly as the parameter wrote it.
@@ -8,6 +8,8 @@ use std::sync::Arc;
 
 use etendue_image::Texels;
 use etendue_math::{Normal3, Point2, Point3};
+
+use crate::bsdf::tabulated::BrdfGrid;
 
 /// A mesh read from a file, in object space.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,6 +38,8 @@ pub struct Assets {
     pub images: HashMap<String, Arc<Texels>>,
     /// Measured spectra by file name: wavelengths in nanometres, ascending, with their values.
     pub spectra: HashMap<String, Vec<[f32; 2]>>,
+    /// Tables of BRDFs by file name.
+    pub brdfs: HashMap<String, BrdfGrid>,
     /// Names of files that could not be read. Whoever tried has said why, so that the scene builder need not.
     pub failed: HashSet<String>,
 }

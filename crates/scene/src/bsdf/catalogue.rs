@@ -2,13 +2,18 @@
 //!
 //! Each states the laws that it breaks by its nature; tests hold it to all others, and show that those stated are broken.
 
-use etendue_spectrum::Sampled;
+use std::sync::LazyLock;
+
+use etendue_math::Vector3;
+use etendue_spectrum::{Sampled, Wavelengths};
 
 use super::facetted::{AnyFacets, CompensatedConductor, FacetShape, Facetted, FresnelForm, Principled};
 use super::laws::Law;
 use super::microfacet::Microfacets;
+use super::tabulated::{BrdfGrid, BrdfTable, Tabulated};
 use super::{
-    Base, BsdfKind, Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, ThinDielectric, classic,
+    Base, BsdfKind, Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Lobes, ThinDielectric,
+    TransportMode, classic,
 };
 
 /// A BSDF with a name.
@@ -95,6 +100,7 @@ pub fn catalogue() -> Vec<Configuration> {
     ];
     rows.extend(facetted_rows());
     rows.extend(classic::configurations());
+    rows.extend(tabulated_rows());
     rows
 }
 
@@ -123,6 +129,52 @@ fn facetted_rows() -> Vec<Configuration> {
         other_glass("glass, Schlick", glass(0.3, 0.3, 1.5), Ggx, Schlick),
         other_glass("smooth glass, Schlick", glass(0.0, 0.0, 1.5), Ggx, Schlick).breaking(&[]),
     ]
+}
+
+/// Tables of other models, and of one that throws light back to where it came from.
+fn tabulated_rows() -> Vec<Configuration> {
+    static GRIDS: LazyLock<[BrdfGrid; 4]> = LazyLock::new(|| {
+        let highlight = classic::Phong {
+            kd: Sampled::splat(0.3),
+            ks: Sampled::splat(0.5),
+            exponent: 30.0,
+            form: classic::PhongForm::Lewis,
+        };
+        [
+            table_of([2, 2, 1], [1.0; 3], |_, _| std::f32::consts::FRAC_1_PI),
+            table_of([32, 32, 16], [1.0, 0.8, 0.4], |wo, wi| {
+                BsdfKind::Classic(classic::Classic::Phong(highlight)).radiance(wo, wi)
+            }),
+            table_of([32, 64, 8], [0.9, 0.8, 0.6], |wo, wi| {
+                BsdfKind::Conductor(copper(0.5, 0.5)).radiance(wo, wi)
+            }),
+            table_of([16, 32, 8], [0.2, 0.4, 0.6], |wo, wi| 0.02 + wo.dot(wi).max(0.0).powi(16)),
+        ]
+    });
+    let [matte, highlight, metal, reflector] = &*GRIDS;
+    vec![
+        tabulated("table of white", matte).lossless(),
+        tabulated("table of Lewis's Phong", highlight),
+        tabulated("table of copper", metal),
+        tabulated("table of a reflector", reflector),
+    ]
+}
+
+impl BsdfKind {
+    /// f of all lobes at the third wavelength.
+    fn radiance(&self, wo: Vector3, wi: Vector3) -> f32 {
+        self.eval(wo, wi, TransportMode::Radiance, Lobes::ALL)[2]
+    }
+}
+
+fn table_of(resolution: [usize; 3], color: [f32; 3], f: impl Fn(Vector3, Vector3) -> f32) -> BrdfGrid {
+    let values = |wo, wi| color.map(|c| c * f(wo, wi));
+    BrdfGrid::tabulate(resolution, values).expect("the models of the catalogue have sound values")
+}
+
+fn tabulated(name: &'static str, grid: &BrdfGrid) -> Configuration {
+    let model = Tabulated { table: BrdfTable::of(grid), lambda: Wavelengths::sample_visible(0.3) };
+    Configuration::new(name, "tabulated", BsdfKind::Tabulated(model))
 }
 
 fn diffuse(name: &'static str, reflectance: [f32; 4]) -> Configuration {

@@ -23,6 +23,7 @@ mod diffuse;
 mod diffuse_transmission;
 pub mod facetted;
 mod layered;
+pub mod tabulated;
 mod thin_dielectric;
 
 pub mod catalogue;
@@ -34,6 +35,8 @@ mod tests;
 use etendue_math::{Frame, Normal3, Point2, Vector3};
 use etendue_spectrum::Sampled;
 
+use self::classic::lobed::{self, Lobed};
+
 pub use classic::Classic;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
@@ -42,6 +45,7 @@ pub use diffuse_transmission::DiffuseTransmission;
 pub use facetted::Facetted;
 pub use layered::{Base, Layered};
 pub use lobes::{BsdfSample, Lobes, TransportMode};
+pub use tabulated::Tabulated;
 pub use thin_dielectric::ThinDielectric;
 
 /// The scattering models, in the shading frame.
@@ -67,6 +71,8 @@ pub enum BsdfKind {
     Facetted(Facetted),
     /// A model of the literature: Phong, Ward, Schlick and others.
     Classic(Classic),
+    /// Any isotropic reflection, by a table.
+    Tabulated(Tabulated),
 }
 
 impl BsdfKind {
@@ -83,6 +89,7 @@ impl BsdfKind {
             Self::Layered(bsdf) => bsdf.lobes(),
             Self::Facetted(bsdf) => bsdf.lobes(),
             Self::Classic(bsdf) => bsdf.lobes(),
+            Self::Tabulated(bsdf) => lobed::lobes(bsdf),
         }
     }
 
@@ -99,6 +106,7 @@ impl BsdfKind {
             Self::Layered(bsdf) => bsdf.eval(wo, wi, mode, lobes),
             Self::Facetted(bsdf) => bsdf.eval(wo, wi, mode, lobes),
             Self::Classic(bsdf) => bsdf.eval(wo, wi, mode, lobes),
+            Self::Tabulated(bsdf) => lobed::eval(bsdf, wo, wi, mode, lobes),
         }
     }
 
@@ -122,6 +130,7 @@ impl BsdfKind {
             Self::Layered(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
             Self::Facetted(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
             Self::Classic(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
+            Self::Tabulated(bsdf) => lobed::sample(bsdf, wo, u_component, u, mode, lobes),
         }
     }
 
@@ -138,6 +147,7 @@ impl BsdfKind {
             Self::Layered(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::Facetted(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::Classic(bsdf) => bsdf.pdf(wo, wi, lobes),
+            Self::Tabulated(bsdf) => lobed::pdf(bsdf, wo, wi, lobes),
         }
     }
 
@@ -163,7 +173,10 @@ impl BsdfKind {
             Self::Layered(bsdf) => Self::Layered(bsdf.regularized()),
             Self::Facetted(bsdf) => Self::Facetted(bsdf.regularized()),
             Self::Classic(bsdf) => Self::Classic(bsdf.regularized()),
-            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::ThinDielectric(_) => self,
+            Self::Diffuse(_)
+            | Self::DiffuseTransmission(_)
+            | Self::ThinDielectric(_)
+            | Self::Tabulated(_) => self,
         }
     }
 
@@ -179,7 +192,8 @@ impl BsdfKind {
             | Self::Dielectric(_)
             | Self::Layered(_)
             | Self::Facetted(_)
-            | Self::Classic(_) => self.sampled_albedo(wo),
+            | Self::Classic(_)
+            | Self::Tabulated(_) => self.sampled_albedo(wo),
         }
     }
 
@@ -341,6 +355,7 @@ impl Bsdf {
             BsdfKind::Layered(bsdf) if bsdf.lobes().is_glossy() => bsdf.glossy_roughness(),
             BsdfKind::Facetted(bsdf) => bsdf.glossy_roughness(),
             BsdfKind::Classic(bsdf) => bsdf.glossy_roughness(),
+            BsdfKind::Tabulated(bsdf) if self.lobes().is_glossy() => bsdf.alpha(),
             _ => 0.0,
         }
     }

@@ -5,6 +5,7 @@ mod facetted;
 mod fresnel;
 mod layered;
 mod microfacets;
+mod tabulated;
 
 use std::f64::consts::TAU;
 

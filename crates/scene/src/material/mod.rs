@@ -28,6 +28,7 @@ mod diffuse;
 mod diffuse_transmission;
 mod mix;
 mod principled;
+mod tabulated;
 mod thin_dielectric;
 
 #[cfg(test)]
@@ -55,6 +56,7 @@ pub use normal_map::{NormalMap, NormalMapId};
 pub use perturbation::Perturbation;
 pub use principled::PrincipledMaterial;
 pub use roughness::{Roughness, RoughnessScale};
+pub use tabulated::TabulatedMaterial;
 pub use thin_dielectric::ThinDielectricMaterial;
 
 use crate::bsdf::{Bsdf, BsdfKind};
@@ -85,6 +87,8 @@ pub enum Material {
     Principled(PrincipledMaterial),
     /// A model of the literature.
     Classic(ClassicMaterial),
+    /// What a table says.
+    Tabulated(TabulatedMaterial),
     /// One of two others.
     Mix(MixMaterial),
     /// None: the surface only bounds participating media, and light passes it.
@@ -156,6 +160,11 @@ pub const MATERIALS: &[MaterialSpec] = &[
     classic::MATERIALS[9],
     classic::MATERIALS[10],
     MaterialSpec {
+        name: "tabulated",
+        doc: "Any isotropic reflection, by a table in a file.",
+        parameters: TabulatedMaterial::PARAMETERS,
+    },
+    MaterialSpec {
         name: "mix",
         doc: "One of two materials at each point, in a given proportion.",
         parameters: MixMaterial::PARAMETERS,
@@ -194,6 +203,7 @@ impl Material {
                 Self::DiffuseTransmission(DiffuseTransmissionMaterial::build(p, materials))
             }
             "principled" => Self::Principled(PrincipledMaterial::build(p, materials)),
+            "tabulated" => Self::Tabulated(TabulatedMaterial::build(p, materials)?),
             "mix" => Self::Mix(MixMaterial::build(p, named)?),
             "interface" | "none" | "" => Self::Interface,
             other => {
@@ -221,6 +231,7 @@ impl Material {
             Self::DiffuseTransmission(material) => material.bsdf(textures, ctx, lambda),
             Self::Principled(material) => material.bsdf(textures, ctx, lambda),
             Self::Classic(material) => BsdfKind::Classic(material.bsdf(textures, ctx, lambda)),
+            Self::Tabulated(material) => material.bsdf(lambda),
             Self::Mix(_) | Self::Interface => return None,
         };
         Some(Bsdf::new(ctx.ns, ctx.ng, ctx.shading_dpdu, kind))
@@ -239,6 +250,7 @@ impl Material {
             Self::DiffuseTransmission(material) => Some(&material.perturbation),
             Self::Principled(material) => Some(&material.perturbation),
             Self::Classic(material) => Some(&material.perturbation),
+            Self::Tabulated(material) => Some(&material.perturbation),
             Self::Mix(_) | Self::Interface => None,
         }
     }

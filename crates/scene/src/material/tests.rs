@@ -10,6 +10,7 @@ use etendue_spectrum::{Sampled, Spectrum, Wavelengths};
 use super::*;
 use crate::assets::Assets;
 use crate::bsdf::fresnel::fresnel_conductor;
+use crate::bsdf::tabulated::BrdfGrid;
 use crate::bsdf::{Base, BsdfKind, Classic, Lobes, TransportMode, classic};
 use crate::diagnostics::{Diagnostics, Severity};
 use crate::document::{Entity, Value};
@@ -149,10 +150,15 @@ fn documented_parameters_are_the_known_ones() {
     for spec in MATERIALS {
         let mut fixture = Fixture::default();
         fixture.name_default("a");
+        let grid = BrdfGrid::tabulate([2, 2, 1], |_, _| [0.1; 3]).unwrap();
+        fixture.assets.brdfs.insert("a.brdf".to_owned(), grid);
         let mut entity = plain(spec.name);
         for parameter in spec.parameters {
             let value = match parameter.kind {
                 "string" if parameter.name == "materials" => Value::Strings(vec!["a".to_owned(); 2]),
+                "string" if spec.name == "tabulated" && parameter.name == "filename" => {
+                    Value::Strings(vec!["a.brdf".to_owned()])
+                }
                 "string" => continue,
                 "bool" => Value::Bools(vec![true]),
                 "integer" => Value::Integers(vec![3]),

@@ -35,7 +35,7 @@ impl Material {
                 mix.amount.constant().is_some()
                     && mix.materials.iter().all(|part| materials.is_uniform(*part))
             }
-            Self::ThinDielectric(_) | Self::Interface => true,
+            Self::ThinDielectric(_) | Self::Tabulated(_) | Self::Interface => true,
         }
     }
 }

@@ -1,0 +1,58 @@
+//! A material that is what a table says.
+
+use etendue_spectrum::Wavelengths;
+
+use super::{Materials, Perturbation, spec};
+use crate::bsdf::BsdfKind;
+use crate::bsdf::tabulated::{BrdfTable, Tabulated};
+use crate::parameters::{ParameterSpec, Parameters};
+
+/// Parameters of `tabulated`.
+#[derive(Clone, Copy, Debug)]
+pub struct TabulatedMaterial {
+    /// The values.
+    pub table: &'static BrdfTable,
+    /// Relief.
+    pub perturbation: Perturbation,
+}
+
+impl PartialEq for TabulatedMaterial {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.table, other.table) && self.perturbation == other.perturbation
+    }
+}
+
+impl TabulatedMaterial {
+    /// What scene files may say.
+    pub const PARAMETERS: &'static [ParameterSpec] = &[
+        spec::spec("filename", "string", "", "File with the table, see docs/scattering/tabulated.md."),
+        spec::DISPLACEMENT,
+        spec::NORMAL_MAP,
+    ];
+
+    pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Option<Self> {
+        let span = p.span_of("filename");
+        let Some(filename) = p.string_opt("filename").filter(|name| !name.is_empty()) else {
+            p.missing("filename", "a tabulated material needs a \"filename\"");
+            return None;
+        };
+        let assets = p.context.assets;
+        let Some(grid) = assets.brdfs.get(&filename) else {
+            if !assets.failed.contains(&filename) {
+                p.diagnostics().error(span, format!("the table \"{filename}\" was not loaded"));
+            }
+            return None;
+        };
+        let table = BrdfTable::of(grid);
+        if table.albedo_max() > 1.02 {
+            let message =
+                format!("the table \"{filename}\" reflects {:.2} times what arrives", table.albedo_max());
+            p.diagnostics().warning(span, message);
+        }
+        Some(Self { table, perturbation: Perturbation::build(p, materials) })
+    }
+
+    pub(super) const fn bsdf(&self, lambda: &Wavelengths) -> BsdfKind {
+        BsdfKind::Tabulated(Tabulated { table: self.table, lambda: *lambda })
+    }
+}
