@@ -24,6 +24,8 @@ fn folder() -> TempDir {
     write("fan.ply", &TRIANGLE.replace("3 0 1 2\n", "5 0 1 2 1 0\n"));
     write("a.spd", "400 1\n500 2\n");
     write("bad.spd", "400\n");
+    write("a.brdf", "brdf 1\n2 2 1\n1 1 1\n1 1 1\n1 1 1\n1 1 1\n");
+    write("bad.brdf", "brdf 1\n2 2 1\n1 1 1\n1 -1 1\n");
     let image = Image::rgb(2, 1, vec![[0.5; 3]; 2]);
     write_image(folder.path().join("a.pfm"), &image).expect("the image can be written");
     folder
@@ -42,6 +44,7 @@ fn all_kinds_of_files_are_loaded() {
         Texture "u" "spectrum" "constant" "spectrum value" "./a.spd" "string filename" "ignored.png"
         LightSource "infinite" "string filename" "./a.pfm" LightSource "point" "spectrum I" "stdillum-D65"
         Material "dielectric" "string normalmap" "././a.pfm" "spectrum eta" "glass-BK7"
+        Material "tabulated" "string filename" "a.brdf"
         Shape "plymesh" "string filename" "a.ply" Shape "plymesh" "string filename" [ "a.ply" ]
         Shape "sphere" "string filename" "ignored.ply"
         ObjectBegin "o" Shape "plymesh" "string filename" "./a.ply" ObjectEnd"#;
@@ -59,6 +62,7 @@ fn all_kinds_of_files_are_loaded() {
     assert_eq!(assets.meshes["a.ply"].triangles, [[0, 1, 2]]);
     assert_eq!((assets.images["a.pfm"].width(), assets.images["a.pfm"].height()), (2, 1));
     assert_eq!(assets.spectra["a.spd"], [[400.0, 1.0], [500.0, 2.0]]);
+    assert_eq!(assets.brdfs.keys().collect::<Vec<_>>(), ["a.brdf"]);
 }
 
 /// Each file that fails is an error where it is named first; the others are there.
@@ -68,7 +72,8 @@ fn failures_are_located() {
     let text = "WorldBegin\nShape \"plymesh\" \"string filename\" \"none.ply\"\n\
         Shape \"plymesh\" \"string filename\" \"bad.ply\"\nShape \"plymesh\" \"string filename\" \"fan.ply\"\n\
         Material \"conductor\" \"spectrum k\" \"bad.spd\" \"spectrum eta\" \"none.spd\"\n\
-        LightSource \"infinite\" \"string filename\" \"none.pfm\"";
+        LightSource \"infinite\" \"string filename\" \"none.pfm\"\n\
+        Material \"tabulated\" \"string filename\" \"bad.brdf\"";
     let (document, _) = read_pbrt_str("test", text, folder.path());
     let (assets, diagnostics) = load_assets(&document);
     let path = |name: &str| folder.path().join(name).display().to_string();
@@ -80,6 +85,7 @@ fn failures_are_located() {
         (6, String::new()),
         (5, format!("`{}`: line 1 should be a wavelength and a value", path("bad.spd"))),
         (5, format!("there is no file `{}`", path("none.spd"))),
+        (7, format!("`{}`: line 4 should be red, green and blue", path("bad.brdf"))),
     ];
     assert_eq!(found.len(), expect.len(), "{found:#?}");
     for (problem, (line, message)) in diagnostics.list().iter().zip(expect) {

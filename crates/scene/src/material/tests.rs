@@ -329,6 +329,30 @@ fn bad_parameters_are_reported() {
     assert!((phong.kd[0] - 0.75).abs() < 1e-6 && (phong.ks[0] - 0.25).abs() < 1e-6);
 }
 
+/// Tables need a file, and say if they make light.
+#[test]
+fn tables_are_examined() {
+    let mut fixture = Fixture::default();
+    let bright = BrdfGrid::tabulate([2, 2, 1], |_, _| [0.1, 0.5, 0.2]).unwrap();
+    fixture.assets.brdfs.insert("bright".to_owned(), bright);
+    fixture.assets.failed.insert("bad".to_owned());
+    let mut complaints = |file: Option<&str>| {
+        let name = |file: &str| Value::Strings(vec![file.to_owned()]);
+        let entity = file.map_or(plain("tabulated"), |file| plain("tabulated").with("filename", name(file)));
+        let (_, diagnostics) = fixture.build(&entity);
+        diagnostics
+            .list()
+            .iter()
+            .map(|problem| (problem.severity, problem.message.clone()))
+            .collect::<Vec<_>>()
+    };
+    let warning = "the table \"bright\" reflects 1.57 times what arrives".to_owned();
+    assert_eq!(complaints(Some("bright")), [(Severity::Warning, warning)]);
+    assert_eq!(complaints(Some("bad")), []);
+    assert_eq!(complaints(None)[0].0, Severity::Error);
+    assert_eq!(complaints(Some("none"))[0].0, Severity::Error);
+}
+
 fn kind_despite_warnings(fixture: &mut Fixture, entity: &Entity) -> BsdfKind {
     let material = fixture.build(entity).0.expect("warnings alone");
     let mut lambda = Wavelengths::sample_visible(0.3);
