@@ -1,5 +1,6 @@
-//! Tables of BRDFs as text: `brdf 1`, the numbers of nodes over theta_h, theta_d and phi_d, then red, green and blue for
-//! each node, the last angle changing quickest. A line holds the three numbers of one node; after `#` comes a comment.
+//! Tables of BRDFs as text: `brdf 1`, the numbers of nodes over theta_h, theta_d and phi_d, then red, green and blue
+//! for each node, the last angle changing quickest. A line holds the three numbers of one node; after `#` comes a
+//! comment.
 
 use std::fmt;
 

@@ -1,9 +1,9 @@
 //! Values of a BRDF on a grid of angles, and the values between.
 //!
-//! With the half vector h at theta_h from the normal, both directions are theta_d from h, and phi_d is the angle about h
-//! from the plane of h and the normal to that of the directions. Exchanging these turns phi_d by 180°, so that a table
-//! over [0°, 180°) is reciprocal. Nodes lie denser where highlights are (Matusik, Pfister, Brand and McMillan
-//! 2003, "A Data-Driven Reflectance Model"): node i of n at `theta_h = 90° (i / (n - 1))²`, node j of m at
+//! With the half vector h at theta_h from the normal, both directions are theta_d from h, and phi_d is the angle
+//! about h from the plane of h and the normal to that of the directions. Exchanging these turns phi_d by 180°, so
+//! that a table over [0°, 180°) is reciprocal. Nodes lie denser where highlights are (Matusik, Pfister, Brand and
+//! McMillan 2003, "A Data-Driven Reflectance Model"): node i of n at `theta_h = 90° (i / (n - 1))²`, node j of m at
 //! `theta_d = 90° j / (m - 1)`, node k of l at `phi_d = 180° k / l`; between them f is linear in each index.
 
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -19,8 +19,8 @@ pub struct BrdfGrid {
 }
 
 impl BrdfGrid {
-    /// From at least two nodes over theta_h and theta_d and one over phi_d, the last changing quickest; `None` if there are
-    /// fewer, their number is not that of the values, or a value is negative or no number.
+    /// From at least two nodes over theta_h and theta_d and one over phi_d, the last changing quickest; `None` if
+    /// there are fewer, their number is not that of the values, or a value is negative or no number.
     #[must_use]
     pub fn new(resolution: [usize; 3], rgb: Vec<[f32; 3]>) -> Option<Self> {
         let [n, m, l] = resolution;
