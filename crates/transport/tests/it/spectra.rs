@@ -3,6 +3,8 @@
 use etendue_math::Vector3;
 use etendue_math::statistics::Moments;
 use etendue_scene::bsdf::fresnel::refract;
+use etendue_spectrum::cie::{x_bar, y_bar, z_bar};
+use etendue_spectrum::named_spectrum;
 
 use crate::support::{Setup, channel, expect_agreement, expect_mean, lit, render_passes};
 
@@ -162,5 +164,57 @@ fn prism_spreads_colours() {
         assert!((place - expected).abs() < 0.005, "band {bucket}: {place} instead of {expected}");
         assert!(place < last, "longer waves are turned less");
         last = place;
+    }
+}
+
+/// Linear interpolation between samples [nm, value].
+fn at(samples: &[[f32; 2]], nm: f64) -> f64 {
+    let next = samples.partition_point(|[x, _]| f64::from(*x) <= nm).clamp(1, samples.len() - 1);
+    let [[x0, y0], [x1, y1]] = [samples[next - 1], samples[next]].map(|sample| sample.map(f64::from));
+    y0 + (y1 - y0) * ((nm - x0) / (x1 - x0)).clamp(0.0, 1.0)
+}
+
+/// CIE L*a*b* of XYZ where white is that of D65 with Y = 1.
+fn lab([x, y, z]: [f64; 3]) -> [f64; 3] {
+    let f = |t: f64| if t > 216.0 / 24389.0 { t.cbrt() } else { (24389.0 / 27.0 * t + 16.0) / 116.0 };
+    let [x, y, z] = [x / 0.950_47, y, z / 1.088_83].map(f);
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+/// BRDF-16, FRES-3: gold, silver and copper under daylight have the colours that follow from their n and k by an integral of
+/// Fresnel's equations at normal incidence.
+#[test]
+fn metals_have_their_colours() {
+    let samples = |name: &str| named_spectrum(name).expect("a known name").samples;
+    let daylight = samples("stdillum-D65");
+    for metal in ["Au", "Ag", "Cu"] {
+        let (n, k) = (samples(&format!("metal-{metal}-eta")), samples(&format!("metal-{metal}-k")));
+        let mut expected = [0.0; 3];
+        let mut white = 0.0;
+        for nm in (360..=830).map(f64::from) {
+            let (n, k) = (at(&n, nm), at(&k, nm));
+            let reflectance = ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k);
+            let light = at(&daylight, nm);
+            for (sum, observer) in expected.iter_mut().zip([x_bar, y_bar, z_bar]) {
+                *sum += light * reflectance * f64::from(observer(nm as f32));
+            }
+            white += light * f64::from(y_bar(nm as f32));
+        }
+        let expected = lab(expected.map(|sum| sum / white));
+        let world = format!(
+            "LightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"
+            Material \"conductor\" \"spectrum eta\" \"metal-{metal}-eta\" \"spectrum k\" \"metal-{metal}-k\" Shape \"disk\""
+        );
+        let camera =
+            "LookAt 0 0 2  0 0 0  0 1 0 Camera \"orthographic\" \"float screenwindow\" [-0.1 0.1 -0.1 0.1]";
+        let setup = Setup { size: [16, 16], sampler: "\"sobol\"", camera, world: &world, ..Setup::default() };
+        let [r, g, b] = color_moments(&setup, metal, 64).map(|moments| moments.mean());
+        let seen = lab([
+            0.412_456 * r + 0.357_576 * g + 0.180_437 * b,
+            0.212_673 * r + 0.715_152 * g + 0.072_175 * b,
+            0.019_334 * r + 0.119_192 * g + 0.950_304 * b,
+        ]);
+        let difference = (0..3).map(|i| (seen[i] - expected[i]).powi(2)).sum::<f64>().sqrt();
+        assert!(difference < 1.0, "{metal}: {seen:?} instead of {expected:?}");
     }
 }
