@@ -198,6 +198,13 @@ impl Scene {
         self.attributes[hit.geometry.0 as usize].lights.is_some()
     }
 
+    /// False if light certainly does not pass the surface at a hit as if it were not there.
+    #[inline]
+    #[must_use]
+    pub fn may_pass(&self, hit: &Hit) -> bool {
+        self.has_passable || self.materials.is_mixture(self.attributes[hit.geometry.0 as usize].material)
+    }
+
     /// The surface at a hit of the ray, whose direction has length 1.
     #[inline]
     #[must_use]

@@ -298,7 +298,7 @@ impl<'s> Walk<'s> {
                 break;
             };
             // All that may be left to find is light that this very surface sends.
-            let is_last = self.depth > 0 && self.depth == self.settings.max_depth && !scene.has_passable;
+            let is_last = self.depth > 0 && self.depth == self.settings.max_depth && !scene.may_pass(&hit);
             if is_last && !scene.emits(&hit) {
                 break;
             }

@@ -143,6 +143,13 @@ impl Materials {
         matches!(self.get(id), Material::Interface)
     }
 
+    /// True if the material is one of others at each point, of which some may be interfaces.
+    #[inline]
+    #[must_use]
+    pub fn is_mixture(&self, id: MaterialId) -> bool {
+        matches!(self.get(id), Material::Mix(_))
+    }
+
     /// That material, or the part of the mixture that is at the point.
     #[inline]
     #[must_use]

@@ -258,3 +258,27 @@ fn moving_sheets_blur() {
         }
     }
 }
+
+/// A path that may not scatter any more still passes a mixture of interfaces, and finds the light behind it.
+#[test]
+fn mixtures_of_interfaces_let_the_last_segment_pass() {
+    let seen_under = |sheet: &str| {
+        let world = format!(
+            "LightSource \"infinite\" {} MakeNamedMaterial \"nothing\" \"string type\" \"interface\" {sheet}
+            Material \"diffuse\" Shape \"disk\" \"float radius\" 5",
+            lit("L", 1.0)
+        );
+        let setup = Setup {
+            integrator: "\"integer maxdepth\" 1 \"string lights\" \"scattering\"",
+            camera: "LookAt 0 0 1  0.2 0 0  0 1 0 Camera \"perspective\" \"float fov\" 40",
+            world: &world,
+            ..Setup::default()
+        };
+        luminance(&setup.film("a sheet of nothing", 16))
+    };
+    let sheet = "Material \"mix\" \"string materials\" [\"nothing\" \"nothing\"] \"float amount\" 0.5
+        AttributeBegin Translate 0 0 2 Shape \"disk\" \"float radius\" 50 AttributeEnd";
+    let open = seen_under("");
+    assert!(open.iter().all(|value| *value > 0.4));
+    expect_equal_pixels("under a sheet", &seen_under(sheet), &open, 1e-4);
+}
