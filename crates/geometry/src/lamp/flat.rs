@@ -36,13 +36,14 @@ impl FlatLamp {
     /// A triangle; `None` without area, and where vertex normals are at odds about the side that is outside.
     pub(super) fn of_triangle(triangles: &Triangles, triangle: u32) -> Option<Self> {
         let [a, b, c] = triangles.positions(triangle);
-        Self::new([a, b, c, b + (c - a)], triangles.side(triangle)?, true)
+        Self::new([a, b, c], None, triangles.side(triangle)?)
     }
 
     /// A patch that is a parallelogram, without vertex normals.
     pub(super) fn of_patch(patches: &Patches, patch: u32) -> Option<Self> {
         let is_simple = patches.is_flat() && patches.mesh().normals.is_empty();
-        is_simple.then(|| Self::new(patches.positions(patch), patches.emission_cone(patch).0, false))?
+        let [a, b, c, d] = patches.positions(patch);
+        is_simple.then(|| Self::new([a, b, c], Some(d), patches.emission_cone(patch).0))?
     }
 
     /// A whole mesh of two triangles that make a parallelogram and look the same way, as lamps often are.
@@ -53,26 +54,27 @@ impl FlatLamp {
         let (first, second) = (Self::of_triangle(triangles, 0)?, Self::of_triangle(triangles, 1)?);
         let [p, q] = [0, 1].map(|triangle| triangles.positions(triangle));
         let own = (0..3).find(|i| !q.contains(&p[*i]))?;
-        let other = q.iter().find(|corner| !p.contains(corner))?;
+        let other = *q.iter().find(|corner| !p.contains(corner))?;
         let (a, b, c) = (p[own], p[(own + 1) % 3], p[(own + 2) % 3]);
-        let gap = (b - a) - (*other - c);
-        let is_parallelogram = q.contains(&b) && q.contains(&c) && gap.abs().max_element() <= first.p_error;
+        let is_parallelogram = q.contains(&b) && q.contains(&c) && opening([a, b, c], other) <= first.p_error;
         let agrees = first.n.dot(second.n) > 0.999_999;
-        (is_parallelogram && agrees).then(|| Self::new([a, b, c, *other], first.n, false))?
+        (is_parallelogram && agrees).then(|| Self::new([a, b, c], Some(other), first.n))?
     }
 
-    /// From the corners a, a + e1, a + e2 and a + e1 + e2.
-    fn new(corners: [Point3; 4], n: Normal3, is_triangle: bool) -> Option<Self> {
-        let [a, b, c, _] = corners;
+    /// From the corners a, a + e1 and a + e2, and of a parallelogram the one at a + e1 + e2 but for its rounding.
+    fn new(corners: [Point3; 3], opposite: Option<Point3>, n: Normal3) -> Option<Self> {
+        let [a, b, c] = corners;
+        let is_triangle = opposite.is_none();
         let (e1, e2) = (b - a, c - a);
         let area = e1.cross(e2).length() * if is_triangle { 0.5 } else { 1.0 };
-        let size = double::largest_coordinate(corners.map(double::point)) as f32;
-        // Six roundings of numbers no larger than twice the coordinates.
-        let p_error = 6.0 * f32::EPSILON * size + f32::MIN_POSITIVE;
+        let all = || corners.into_iter().chain(opposite);
+        let size = double::largest_coordinate(all().map(double::point)) as f32;
+        // Six roundings of numbers no larger than twice the coordinates, and how far the surface leaves the plane.
+        let bend = opposite.map_or(0.0, |opposite| opening(corners, opposite));
+        let p_error = 6.0 * f32::EPSILON * size + bend + f32::MIN_POSITIVE;
         let pdf_a = 1.0 / area;
         let lamp = Self { a, e1, e2, n, is_triangle, pdf_a, far_squared: 0.0, p_error };
-        let used = if is_triangle { &corners[..3] } else { &corners[..] };
-        let radius_squared = used.iter().map(|p| (*p - lamp.middle()).length_squared()).fold(0.0, f32::max);
+        let radius_squared = all().map(|p| (p - lamp.middle()).length_squared()).fold(0.0, f32::max);
         let is_valid = n.as_vector().length_squared() > 0.0 && area > 0.0 && pdf_a.is_finite();
         is_valid.then_some(Self { far_squared: FAR * FAR * radius_squared, ..lamp })
     }
@@ -185,6 +187,11 @@ impl FlatLamp {
         let is_accurate = solid_angle > 0.0 && SPHERICAL_SAMPLING.contains(&solid_angle);
         is_accurate.then_some(NearLamp { halves, solid_angle, is_triangle: self.is_triangle })
     }
+}
+
+/// By how much, per coordinate, a fourth corner misses the parallelogram over a corner and its two neighbours.
+fn opening([a, b, c]: [Point3; 3], opposite: Point3) -> f32 {
+    ((b - a) - (opposite - c)).abs().max_element()
 }
 
 /// A lamp on the sphere of directions: a triangle, or the halves a, b, d and a, d, c of a parallelogram a, b, d, c.

@@ -158,3 +158,20 @@ fn what_is_joined() {
     assert!(joined(smooth(up)).is_some(), "vertex normals on one side");
     assert!(joined(smooth(-up)).is_none(), "vertex normals on both sides");
 }
+
+/// Patches that are parallelograms but for rounding leave the lamp's plane by no more than the stated error.
+#[test]
+fn bent_corners_are_within_the_error() {
+    let [a, b, c, d] = corners();
+    for bend in [0.0, 5e-7, -1.2e-6] {
+        let d = d + Vector3::splat(bend);
+        let patch = BilinearMesh {
+            positions: vec![a, b, c, d],
+            indices: vec![[0, 1, 2, 3]],
+            ..BilinearMesh::default()
+        };
+        let lamp = lamp_of(Shape::Bilinear(patch));
+        let sample = lamp.sample_area(Point2::splat(1.0));
+        assert!((sample.p - d).abs().max_element() <= sample.p_error.x, "{bend}");
+    }
+}
