@@ -6,6 +6,7 @@ use std::path::Path;
 use etendue::io::images::{write_atomically, write_image};
 use etendue::lab::brdf::{LawRow, SubjectError, law_names, law_table, law_table_text};
 use etendue::lab::{Exploration, Subject, explore};
+use etendue::scene::bsdf::laws::Measures;
 use serde_json::{Map, Value, json};
 
 use crate::args::BrdfArguments;
@@ -96,34 +97,36 @@ fn print_laws(is_json: bool) -> Result<()> {
 }
 
 fn row_json(row: &LawRow) -> Value {
-    let parameters: Map<String, Value> =
-        row.configuration.parameters.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect();
+    let LawRow { configuration, measures, .. } = row;
+    let parameters =
+        configuration.parameters.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect();
     let broken: Vec<&str> = row.broken.iter().map(|law| law.name()).collect();
-    let measures = &row.measures;
-    json!({
-        "model": row.configuration.model,
-        "name": row.configuration.name,
-        "parameters": parameters,
-        "reciprocity_error": measures.reciprocity_error.value,
-        "reciprocity_standard_error": measures.reciprocity_error.standard_error,
-        "albedo_max": measures.albedo_max.value,
-        "furnace": measures.furnace.value,
-        "chi2_p": measures.chi2_p,
-        "is_lossless": row.configuration.is_lossless,
-        "laws_broken": broken,
-    })
+    let mut object = laws_json(configuration.model, configuration.name, parameters, measures, &broken);
+    object["is_lossless"] = json!(configuration.is_lossless);
+    object
 }
 
 fn exploration_json(exploration: &Exploration) -> Value {
-    let parameters: Map<String, Value> =
+    let Exploration { model, name, measures, .. } = exploration;
+    let parameters =
         exploration.parameters.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
-    let measures = &exploration.measures;
     let mut broken: Vec<&str> =
         exploration.laws.iter().filter(|line| !line.is_kept).map(|line| line.law.name()).collect();
     broken.dedup();
+    laws_json(model, name, parameters, measures, &broken)
+}
+
+/// What is said of every model.
+fn laws_json(
+    model: &str,
+    name: &str,
+    parameters: Map<String, Value>,
+    measures: &Measures,
+    broken: &[&str],
+) -> Value {
     json!({
-        "model": exploration.model,
-        "name": exploration.name,
+        "model": model,
+        "name": name,
         "parameters": parameters,
         "reciprocity_error": measures.reciprocity_error.value,
         "reciprocity_standard_error": measures.reciprocity_error.standard_error,
