@@ -225,7 +225,7 @@ fn statistics(
         spp: job.film.n_passes(),
         samples: watch.n_samples(),
         rays: rays.closest,
-        shadow_rays: rays.closest,
+        shadow_rays: rays.shadow,
         photons_stored: 0,
         peak_memory_bytes: stats::peak_memory().unwrap_or(0),
         threads: rayon::current_num_threads(),

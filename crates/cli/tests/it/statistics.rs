@@ -34,6 +34,15 @@ fn keys() {
     }
 }
 
+/// Both kinds of rays are told apart: paths that find lights by chance ask for no visibility.
+#[test]
+fn shadow_rays_are_counted_apart() {
+    let folder = Folder::with_scene(ROOM);
+    let stats = statistics(&folder, "--spp 2 --integrator path:lights=scattering");
+    assert_eq!(stats["shadow_rays"], 0, "{stats}");
+    assert!(stats["rays"].as_u64() > Some(0), "{stats}");
+}
+
 /// The processor time of the process is that of its threads and a little more; no thread works longer than the render
 /// takes, and the least busy one gives the share.
 #[test]
