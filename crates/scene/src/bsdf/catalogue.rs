@@ -7,7 +7,9 @@ use std::sync::LazyLock;
 use etendue_math::Vector3;
 use etendue_spectrum::{Sampled, Wavelengths};
 
-use super::facetted::{AnyFacets, CompensatedConductor, FacetShape, Facetted, FresnelForm, Principled};
+use super::facetted::{
+    AnyFacets, CompensatedConductor, CompensatedDielectric, FacetShape, Facetted, FresnelForm, Principled,
+};
 use super::laws::Law;
 use super::microfacet::Microfacets;
 use super::tabulated::{BrdfGrid, BrdfTable, Tabulated};
@@ -128,6 +130,14 @@ fn facetted_rows() -> Vec<Configuration> {
         other_glass("glass, Beckmann, brushed", glass(0.6, 0.2, 1.5), Beckmann, Exact),
         other_glass("glass, Schlick", glass(0.3, 0.3, 1.5), Ggx, Schlick),
         other_glass("smooth glass, Schlick", glass(0.0, 0.0, 1.5), Ggx, Schlick).breaking(&[]),
+        unlost("glass, all bounces, alpha 0.1", glass(0.1, 0.1, 1.5), Ggx),
+        unlost("glass, all bounces, alpha 0.5", glass(0.5, 0.5, 1.5), Ggx),
+        unlost("glass, all bounces, alpha 1", glass(1.0, 1.0, 1.5), Ggx),
+        unlost("diamond, all bounces, alpha 0.3", glass(0.3, 0.3, 2.4), Ggx),
+        unlost("air in water, all bounces, alpha 0.3", glass(0.3, 0.3, 1.0 / 1.33), Ggx),
+        unlost("glass, all bounces, Beckmann 0.4", glass(0.4, 0.4, 1.5), Beckmann),
+        unlost("glass, all bounces, brushed", glass(0.6, 0.2, 1.5), Ggx).breaking(&[Law::Furnace]),
+        unlost("smooth glass, all bounces", glass(0.0, 0.0, 1.5), Ggx),
     ]
 }
 
@@ -269,6 +279,17 @@ fn other_glass(
         .named("fresnel", fresnel.name())
         .lossless()
         .breaking(&[Law::Furnace])
+}
+
+/// Glass with all bounces.
+fn unlost(name: &'static str, plain: Dielectric, shape: FacetShape) -> Configuration {
+    let microfacets = other_facets(plain.microfacets, shape, FresnelForm::Exact);
+    let model = CompensatedDielectric::new(Dielectric { microfacets, eta: plain.eta });
+    let kind = BsdfKind::Facetted(Facetted::CompensatedDielectric(model));
+    Configuration { kind, ..transparent(name, plain) }
+        .named("distribution", shape.name())
+        .named("multiplescattering", "true")
+        .lossless()
 }
 
 fn transparent(name: &'static str, dielectric: Dielectric) -> Configuration {

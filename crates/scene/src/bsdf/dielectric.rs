@@ -204,7 +204,7 @@ fn facet_jacobian(wo: Vector3, wi: Vector3, wm: Vector3, eta: f32) -> f32 {
 /// The one place where radiance changes by the square of the index ratio; `eta` is the index on the side of `wi`
 /// relative to that of `wo` (SPEC FRES-8).
 #[inline]
-fn radiance_scale(eta: f32, mode: TransportMode) -> f32 {
+pub(super) fn radiance_scale(eta: f32, mode: TransportMode) -> f32 {
     match mode {
         TransportMode::Radiance => 1.0 / sqr(eta),
         TransportMode::Importance => 1.0,

@@ -5,6 +5,7 @@ use etendue_spectrum::{Spectrum, Wavelengths};
 use super::index::RefractiveIndex;
 use super::roughness::{Roughness, RoughnessNames};
 use super::{FacetOptions, MaterialContext, Materials, Perturbation, spec};
+use crate::bsdf::facetted::CompensatedDielectric;
 use crate::bsdf::{BsdfKind, Dielectric, Facetted};
 use crate::medium::Interface;
 use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
@@ -23,6 +24,8 @@ pub struct DielectricMaterial {
     pub roughness: Roughness,
     /// Its facets.
     pub facets: FacetOptions,
+    /// With the light that bounces several times among them.
+    pub bounces: bool,
     /// Relief.
     pub perturbation: Perturbation,
 }
@@ -40,6 +43,7 @@ impl DielectricMaterial {
         spec::REMAP_ROUGHNESS,
         FacetOptions::DISTRIBUTION,
         FacetOptions::FRESNEL,
+        FacetOptions::MULTIPLE_SCATTERING,
         spec::DISPLACEMENT,
         spec::NORMAL_MAP,
     ];
@@ -61,6 +65,7 @@ impl DielectricMaterial {
             interface,
             roughness: Roughness::build(p, &RoughnessNames::PLAIN),
             facets: FacetOptions::build(p),
+            bounces: p.bool("multiplescattering", false),
             perturbation: Perturbation::build(p, materials),
         }
     }
@@ -74,9 +79,14 @@ impl DielectricMaterial {
     ) -> BsdfKind {
         let eta = self.eta.of_hero(textures, lambda) / self.eta_outside.of_hero(textures, lambda);
         let microfacets = self.roughness.microfacets(textures, &ctx.texture);
-        if self.facets.are_plain() {
+        if self.facets.are_plain() && !self.bounces {
             return BsdfKind::Dielectric(Dielectric { microfacets, eta });
         }
-        BsdfKind::Facetted(Facetted::Dielectric(Dielectric { microfacets: self.facets.of(microfacets), eta }))
+        let dielectric = Dielectric { microfacets: self.facets.of(microfacets), eta };
+        BsdfKind::Facetted(if self.bounces {
+            Facetted::CompensatedDielectric(CompensatedDielectric::new(dielectric))
+        } else {
+            Facetted::Dielectric(dielectric)
+        })
     }
 }

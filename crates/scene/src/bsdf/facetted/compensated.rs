@@ -53,49 +53,57 @@ impl CompensatedConductor {
 
 /// The alpha of isotropic facets that lose about as much light in a direction: the root mean square of both towards
 /// the normal, that of the azimuth towards the horizon.
-fn alpha_along(facets: AnyFacets, w: Vector3) -> f32 {
+pub(super) fn alpha_along(facets: AnyFacets, w: Vector3) -> f32 {
     let (x, y) = facets.alphas.alpha();
     (0.5 * (sqr(x) + sqr(y)) * sqr(w.z) + sqr(x * w.x) + sqr(y * w.y)).sqrt()
 }
 
-/// `E_avg`: the mean over azimuths and cosines.
-fn mean_energy(facets: AnyFacets) -> f32 {
+/// `E_avg`: the mean over azimuths and cosines, of facets of which that of an alpha and the albedo for cosine and alpha
+/// are known.
+pub(super) fn mean_energy(
+    facets: AnyFacets,
+    mean: impl Fn(f32) -> f32,
+    albedo: impl Fn(f32, f32) -> f32,
+) -> f32 {
     const N: usize = 8;
-    let table = EnergyTable::of(facets.shape);
     let (x, y) = facets.alphas.alpha();
     if x == y {
-        return table.mean(x);
+        return mean(x);
     }
     let energy = |k: usize| {
         // Even in the squared cosine, by which E is weighted; a quarter of the turn stands for all.
         let cos = ((k / N) as f32 + 0.5).sqrt() / (N as f32).sqrt();
         let (sin_phi, cos_phi) = (FRAC_PI_2 * ((k % N) as f32 + 0.5) / N as f32).sin_cos();
         let sin = (1.0 - sqr(cos)).sqrt();
-        table.albedo(cos, alpha_along(facets, Vector3::new(sin * cos_phi, sin * sin_phi, cos)))
+        albedo(cos, alpha_along(facets, Vector3::new(sin * cos_phi, sin * sin_phi, cos)))
     };
     (0..N * N).map(energy).sum::<f32>() / (N * N) as f32
 }
 
 /// `F_ms / (pi (1 - E_avg))`.
 fn later_bounces(conductor: &Conductor<AnyFacets>) -> Sampled {
-    let mean = if conductor.microfacets.is_smooth() { 1.0 } else { mean_energy(conductor.microfacets) };
+    let facets = conductor.microfacets;
+    if facets.is_smooth() {
+        return Sampled::ZERO;
+    }
+    let table = EnergyTable::of(facets.shape);
+    let mean = mean_energy(facets, |alpha| table.mean(alpha), |cos, alpha| table.albedo(cos, alpha));
     if mean > 1.0 - 1e-5 {
         return Sampled::ZERO;
     }
-    let f = mean_reflectance(conductor);
+    let f = mean_over_cosines(|cos| facets.metal_reflectance(cos, conductor.eta, conductor.k));
     f * f * mean / (Sampled::ONE - f * (1.0 - mean)) * (FRAC_1_PI / (1.0 - mean)) // [Kulla and Conty 2017]
 }
 
 /// `2 ∫ F cos d cos` by Gauss's rule of four points.
-fn mean_reflectance(conductor: &Conductor<AnyFacets>) -> Sampled {
+pub(super) fn mean_over_cosines(f: impl Fn(f32) -> Sampled) -> Sampled {
     const GAUSS_4: [(f32, f32); 4] = [
         (0.069_431_84, 0.173_927_42),
         (0.330_009_48, 0.326_072_57),
         (0.669_990_5, 0.326_072_57),
         (0.930_568_2, 0.173_927_42),
     ];
-    let at = |cos| conductor.microfacets.metal_reflectance(cos, conductor.eta, conductor.k);
-    GAUSS_4.into_iter().fold(Sampled::ZERO, |sum, (cos, weight)| sum + at(cos) * (2.0 * cos * weight))
+    GAUSS_4.into_iter().fold(Sampled::ZERO, |sum, (cos, weight)| sum + f(cos) * (2.0 * cos * weight))
 }
 
 impl Lobed for CompensatedConductor {

@@ -4,13 +4,17 @@
 //! is the same for facets that reflect `(1 - wo·h)⁵`, so that those of Schlick's fit reflect `F0 (E - B) + B`. The
 //! tables are even in `sqrt(cos)`, which is how E rises from grazing, and in `sqrt(alpha)`; between entries they are
 //! bilinear, and the mean is that of the interpolated function.
+//!
+//! For a transparent interface E counts what is reflected and refracted, as flux; it depends on the relative index too. There
+//! is a table for each of some indices, even in the root of `(eta - 1)/(eta + 1)` since what is totally reflected changes
+//! quickly where indices are nearly equal; each is computed when it is first needed.
 
 use std::sync::OnceLock;
 
 use etendue_math::{Point2, Vector3, lerp, sqr, unit_f32};
 
 use super::{AnyFacets, FacetShape, Facets, FresnelForm};
-use crate::bsdf::fresnel::{reflect, schlick_weight};
+use crate::bsdf::fresnel::{reflect, refract, schlick_weight};
 use crate::bsdf::microfacet::Microfacets;
 
 /// Entries along each axis.
@@ -113,24 +117,112 @@ impl EnergyTable {
     }
 }
 
-/// The albedo of lossless facets after one bounce, the mean weight of visible normals at even points, and with
-/// facets that reflect `(1 - wo·h)⁵`.
+/// The albedo of lossless facets after one bounce, and with facets that reflect `(1 - wo·h)⁵`.
 fn one_bounce(shape: FacetShape, alpha: f32, cos: f32) -> [f32; 2] {
+    let facets = AnyFacets { alphas: Microfacets::new(alpha, alpha), shape, fresnel: FresnelForm::Exact };
+    mean_over_facets(facets, cos, N_POINTS, |wo, wm| {
+        let wi = reflect(wo, wm);
+        if wi.z <= 0.0 {
+            return [0.0; 2];
+        }
+        let weight = facets.g_over_g1(wo, wi);
+        [weight, weight * schlick_weight(wo.dot(wm))]
+    })
+}
+
+/// The mean over even points of what visible normals `wm` give to the direction `wo` of that cosine.
+fn mean_over_facets<const K: usize>(
+    facets: AnyFacets,
+    cos: f32,
+    n_points: u32,
+    value: impl Fn(Vector3, Vector3) -> [f32; K],
+) -> [f32; K] {
     // Multiples of the powers of 1/g with g³ = g + 1 (Roberts 2018), as shares of 2³².
     const STEPS: [u32; 2] = [3_242_174_889, 2_447_445_414];
-    let facets = AnyFacets { alphas: Microfacets::new(alpha, alpha), shape, fresnel: FresnelForm::Exact };
     let cos = cos.max(1e-4);
     let wo = Vector3::new((1.0 - sqr(cos)).max(0.0).sqrt(), 0.0, cos);
-    let mut sums = [0.0_f64; 2];
-    for k in 0..N_POINTS {
+    let mut sums = [0.0_f64; K];
+    for k in 0..n_points {
         let [x, y] = STEPS.map(|step| unit_f32(step.wrapping_mul(k).wrapping_add(1 << 31)));
         let wm = facets.sample_visible_normal(wo, Point2::new(x, y));
-        let wi = reflect(wo, wm);
-        if wi.z > 0.0 {
-            let weight = f64::from(facets.g_over_g1(wo, wi));
-            sums[0] += weight;
-            sums[1] += weight * f64::from(schlick_weight(wo.dot(wm)));
-        }
+        sums.iter_mut().zip(value(wo, wm)).for_each(|(sum, value)| *sum += f64::from(value));
     }
-    sums.map(|sum| (sum / f64::from(N_POINTS)) as f32)
+    sums.map(|sum| (sum / f64::from(n_points)) as f32)
+}
+
+/// Relative indices with a table.
+const N_INDICES: usize = 49;
+/// Facets per entry of these tables.
+const N_INTERFACE_POINTS: u32 = 1024;
+
+/// E of a transparent interface at one relative index.
+#[derive(Clone, Copy)]
+pub(super) struct InterfaceEnergy {
+    /// Tables of the neighbouring indices.
+    tables: [&'static Table; 2],
+    /// How far the index is from the first to the second.
+    share: f32,
+}
+
+impl InterfaceEnergy {
+    /// Of facets between media whose indices have the ratio `eta`, seen from the first.
+    pub(super) fn of(facets: AnyFacets, eta: f32) -> Self {
+        let contrast = (eta - 1.0) / (eta + 1.0);
+        let root = contrast.abs().sqrt().copysign(contrast);
+        let x = 0.5 * (root + 1.0) * (N_INDICES - 1) as f32;
+        let i = (x as usize).min(N_INDICES - 2);
+        let table = |i| interface_table(facets.shape, facets.fresnel, i);
+        Self { tables: [table(i), table(i + 1)], share: x - i as f32 }
+    }
+
+    /// `E(cos, alpha)`, for alpha up to 1.
+    pub(super) fn albedo(&self, cos: f32, alpha: f32) -> f32 {
+        lerp(self.share, self.tables[0].at(cos, alpha), self.tables[1].at(cos, alpha))
+    }
+
+    /// `E_avg(alpha)`.
+    pub(super) fn mean(&self, alpha: f32) -> f32 {
+        lerp(self.share, self.tables[0].mean(alpha), self.tables[1].mean(alpha))
+    }
+}
+
+/// The table of an index; computed at the first call.
+fn interface_table(shape: FacetShape, fresnel: FresnelForm, i: usize) -> &'static Table {
+    type Tables = [OnceLock<Box<Table>>; N_INDICES];
+    static GGX: [Tables; 2] = [const { [const { OnceLock::new() }; N_INDICES] }; 2];
+    static BECKMANN: [Tables; 2] = [const { [const { OnceLock::new() }; N_INDICES] }; 2];
+    let forms = match shape {
+        FacetShape::Ggx => &GGX,
+        FacetShape::Beckmann => &BECKMANN,
+    };
+    let tables = match fresnel {
+        FresnelForm::Exact => &forms[0],
+        FresnelForm::Schlick => &forms[1],
+    };
+    tables[i].get_or_init(|| {
+        // At both ends one index is infinitely larger; in the middle both are equal.
+        let root = (2.0 * i as f32 / (N_INDICES - 1) as f32 - 1.0).clamp(-0.999, 0.999);
+        let contrast = root * root.abs();
+        Box::new(interface_energy(shape, fresnel, (1.0 + contrast) / (1.0 - contrast)))
+    })
+}
+
+fn interface_energy(shape: FacetShape, fresnel: FresnelForm, eta: f32) -> Table {
+    let square = |i: usize| sqr(i as f32 / (N - 1) as f32);
+    let mut values = [[1.0; N]; N];
+    for (i, j) in (1..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
+        let facets = AnyFacets { alphas: Microfacets::new(square(i), square(i)), shape, fresnel };
+        let leaves = |wo, wm| [leaving_once(facets, eta, wo, wm)];
+        values[i][j] = mean_over_facets(facets, square(j), N_INTERFACE_POINTS, leaves)[0].min(1.0);
+    }
+    Table::new(values)
+}
+
+/// Flux from `wo` that a facet `wm` reflects or refracts to the outside.
+fn leaving_once(facets: AnyFacets, eta: f32, wo: Vector3, wm: Vector3) -> f32 {
+    let f = facets.reflectance(wo.dot(wm), eta);
+    let reflected = Some(reflect(wo, wm)).filter(|wi| wi.z > 0.0);
+    let refracted = refract(wo, wm, eta).map(|refraction| refraction.wt).filter(|wi| wi.z < 0.0);
+    let passed = |wi: Option<Vector3>| wi.map_or(0.0, |wi| facets.g_over_g1(wo, wi));
+    f * passed(reflected) + (1.0 - f) * passed(refracted)
 }

@@ -6,6 +6,7 @@
 
 mod beckmann;
 mod compensated;
+mod compensated_dielectric;
 mod energy;
 mod facets;
 mod principled;
@@ -18,6 +19,7 @@ use super::{BsdfSample, Conductor, Dielectric, Lobes, TransportMode};
 
 pub use beckmann::Beckmann;
 pub use compensated::CompensatedConductor;
+pub use compensated_dielectric::CompensatedDielectric;
 pub use facets::{AnyFacets, FacetShape, Facets, FresnelForm};
 pub use principled::Principled;
 
@@ -30,6 +32,8 @@ pub enum Facetted {
     CompensatedConductor(CompensatedConductor),
     /// A boundary between transparent media.
     Dielectric(Dielectric<AnyFacets>),
+    /// A boundary between transparent media, with all bounces.
+    CompensatedDielectric(CompensatedDielectric),
     /// glTF's metal and coated base.
     Principled(Principled),
 }
@@ -42,6 +46,7 @@ impl Facetted {
             Self::Conductor(bsdf) => bsdf.lobes(),
             Self::CompensatedConductor(bsdf) => lobed::lobes(bsdf),
             Self::Dielectric(bsdf) => bsdf.lobes(),
+            Self::CompensatedDielectric(bsdf) => bsdf.lobes(),
             Self::Principled(bsdf) => lobed::lobes(bsdf),
         }
     }
@@ -53,6 +58,7 @@ impl Facetted {
             Self::Conductor(bsdf) => bsdf.eval(wo, wi, lobes),
             Self::CompensatedConductor(bsdf) => lobed::eval(bsdf, wo, wi, mode, lobes),
             Self::Dielectric(bsdf) => bsdf.eval(wo, wi, mode, lobes),
+            Self::CompensatedDielectric(bsdf) => bsdf.eval(wo, wi, mode, lobes),
             Self::Principled(bsdf) => lobed::eval(bsdf, wo, wi, mode, lobes),
         }
     }
@@ -71,6 +77,7 @@ impl Facetted {
             Self::Conductor(bsdf) => bsdf.sample(wo, u, lobes),
             Self::CompensatedConductor(bsdf) => lobed::sample(bsdf, wo, u_component, u, mode, lobes),
             Self::Dielectric(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
+            Self::CompensatedDielectric(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
             Self::Principled(bsdf) => lobed::sample(bsdf, wo, u_component, u, mode, lobes),
         }
     }
@@ -82,6 +89,7 @@ impl Facetted {
             Self::Conductor(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::CompensatedConductor(bsdf) => lobed::pdf(bsdf, wo, wi, lobes),
             Self::Dielectric(bsdf) => bsdf.pdf(wo, wi, lobes),
+            Self::CompensatedDielectric(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::Principled(bsdf) => lobed::pdf(bsdf, wo, wi, lobes),
         }
     }
@@ -97,6 +105,7 @@ impl Facetted {
             Self::Dielectric(bsdf) => {
                 Self::Dielectric(Dielectric { microfacets: bsdf.microfacets.regularized(), ..bsdf })
             }
+            Self::CompensatedDielectric(bsdf) => Self::CompensatedDielectric(bsdf.regularized()),
             Self::Principled(bsdf) => Self::Principled(bsdf.regularized()),
         }
     }
@@ -111,6 +120,7 @@ impl Facetted {
             Self::Conductor(bsdf) => bsdf.microfacets.mean_alpha(),
             Self::CompensatedConductor(bsdf) => bsdf.facets().mean_alpha(),
             Self::Dielectric(bsdf) => bsdf.microfacets.mean_alpha(),
+            Self::CompensatedDielectric(bsdf) => bsdf.facets().mean_alpha(),
             Self::Principled(bsdf) => bsdf.mean_alpha(),
         }
     }
