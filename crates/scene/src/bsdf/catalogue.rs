@@ -10,6 +10,7 @@ use etendue_spectrum::{Sampled, Wavelengths};
 use super::facetted::{
     AnyFacets, CompensatedConductor, CompensatedDielectric, FacetShape, Facetted, FresnelForm, Principled,
 };
+use super::hair::{Hair, HairRoughness};
 use super::laws::Law;
 use super::microfacet::Microfacets;
 use super::tabulated::{BrdfGrid, BrdfTable, Tabulated};
@@ -103,6 +104,7 @@ pub fn catalogue() -> Vec<Configuration> {
     rows.extend(facetted_rows());
     rows.extend(classic::configurations());
     rows.extend(tabulated_rows());
+    rows.extend(hair_rows());
     rows
 }
 
@@ -139,6 +141,31 @@ fn facetted_rows() -> Vec<Configuration> {
         unlost("glass, all bounces, brushed", glass(0.6, 0.2, 1.5), Ggx).breaking(&[Law::Furnace]),
         unlost("smooth glass, all bounces", glass(0.0, 0.0, 1.5), Ggx),
     ]
+}
+
+/// Fibres, whose offset belongs to the direction in which they are seen.
+fn hair_rows() -> Vec<Configuration> {
+    const BROWN: [f32; 4] = [1.78, 0.91, 0.62, 0.5];
+    let rows = [
+        hair("hair, brown", 0.4, [0.3, 0.3, 2.0], BROWN),
+        hair("hair, sleek", -0.7, [0.15, 0.2, 3.0], BROWN),
+        hair("hair, rough", 0.2, [0.9, 0.8, 0.0], BROWN),
+        hair("hair, white", 0.3, [0.3, 0.3, 2.0], [0.0; 4]).lossless(),
+        hair("hair, white, rough, at its edge", 1.0, [1.0, 1.0, 10.0], [0.0; 4]).lossless(),
+    ];
+    rows.map(|row| row.breaking(&[Law::Reciprocity])).into()
+}
+
+fn hair(name: &'static str, h: f32, [beta_m, beta_n, alpha]: [f32; 3], sigma_a: [f32; 4]) -> Configuration {
+    let roughness = HairRoughness { beta_m, beta_n, alpha_rad: alpha.to_radians() };
+    let fibre = Hair::new(h, roughness, 1.55, Sampled::from_array(sigma_a));
+    Configuration::new(name, "hair", BsdfKind::Hair(fibre))
+        .with("h", &[h])
+        .with("beta_m", &[beta_m])
+        .with("beta_n", &[beta_n])
+        .with("alpha", &[alpha])
+        .with("sigma_a", &sigma_a)
+        .with("eta", &[1.55])
 }
 
 /// Tables of other models, and of one that throws light back to where it came from.

@@ -22,6 +22,7 @@ mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
 pub mod facetted;
+pub mod hair;
 mod layered;
 pub mod tabulated;
 mod thin_dielectric;
@@ -43,6 +44,7 @@ pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
 pub use facetted::Facetted;
+pub use hair::Hair;
 pub use layered::{Base, Layered};
 pub use lobes::{BsdfSample, Lobes, TransportMode};
 pub use tabulated::Tabulated;
@@ -73,6 +75,8 @@ pub enum BsdfKind {
     Classic(Classic),
     /// Any isotropic reflection, by a table.
     Tabulated(Tabulated),
+    /// A fibre.
+    Hair(Hair),
 }
 
 impl BsdfKind {
@@ -90,6 +94,7 @@ impl BsdfKind {
             Self::Facetted(bsdf) => bsdf.lobes(),
             Self::Classic(bsdf) => bsdf.lobes(),
             Self::Tabulated(bsdf) => lobed::lobes(bsdf),
+            Self::Hair(bsdf) => bsdf.lobes(),
         }
     }
 
@@ -107,6 +112,7 @@ impl BsdfKind {
             Self::Facetted(bsdf) => bsdf.eval(wo, wi, mode, lobes),
             Self::Classic(bsdf) => bsdf.eval(wo, wi, mode, lobes),
             Self::Tabulated(bsdf) => lobed::eval(bsdf, wo, wi, mode, lobes),
+            Self::Hair(bsdf) => bsdf.eval(wo, wi, lobes),
         }
     }
 
@@ -131,6 +137,7 @@ impl BsdfKind {
             Self::Facetted(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
             Self::Classic(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
             Self::Tabulated(bsdf) => lobed::sample(bsdf, wo, u_component, u, mode, lobes),
+            Self::Hair(bsdf) => bsdf.sample(wo, u_component, u, lobes),
         }
     }
 
@@ -148,6 +155,7 @@ impl BsdfKind {
             Self::Facetted(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::Classic(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::Tabulated(bsdf) => lobed::pdf(bsdf, wo, wi, lobes),
+            Self::Hair(bsdf) => bsdf.pdf(wo, wi, lobes),
         }
     }
 
@@ -176,11 +184,12 @@ impl BsdfKind {
             Self::Diffuse(_)
             | Self::DiffuseTransmission(_)
             | Self::ThinDielectric(_)
-            | Self::Tabulated(_) => self,
+            | Self::Tabulated(_)
+            | Self::Hair(_) => self,
         }
     }
 
-    /// Fraction of light from a uniform surrounding that leaves towards `wo`: exact for diffuse surfaces and panes, else
+    /// Fraction of light from a uniform surrounding that leaves towards `wo`: exact for diffuse surfaces, panes and hair, else
     /// the mean of a few fixed samples.
     #[must_use]
     pub fn albedo(&self, wo: Vector3) -> Sampled {
@@ -188,6 +197,7 @@ impl BsdfKind {
             Self::Diffuse(bsdf) => bsdf.reflectance,
             Self::DiffuseTransmission(bsdf) => bsdf.reflectance + bsdf.transmittance,
             Self::ThinDielectric(_) => Sampled::ONE,
+            Self::Hair(bsdf) => bsdf.albedo(wo),
             Self::Conductor(_)
             | Self::Dielectric(_)
             | Self::Layered(_)
@@ -356,6 +366,7 @@ impl Bsdf {
             BsdfKind::Facetted(bsdf) => bsdf.glossy_roughness(),
             BsdfKind::Classic(bsdf) => bsdf.glossy_roughness(),
             BsdfKind::Tabulated(bsdf) if self.lobes().is_glossy() => bsdf.alpha(),
+            BsdfKind::Hair(bsdf) => bsdf.alpha(),
             _ => 0.0,
         }
     }

@@ -3,6 +3,7 @@
 mod classic;
 mod facetted;
 mod fresnel;
+mod hair;
 mod layered;
 mod microfacets;
 mod tabulated;

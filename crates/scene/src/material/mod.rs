@@ -26,6 +26,7 @@ mod conductor;
 mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
+mod hair;
 mod mix;
 mod principled;
 mod tabulated;
@@ -48,6 +49,7 @@ pub use dielectric::DielectricMaterial;
 pub use diffuse::DiffuseMaterial;
 pub use diffuse_transmission::DiffuseTransmissionMaterial;
 pub use facet_options::FacetOptions;
+pub use hair::{HairColor, HairMaterial};
 pub use index::RefractiveIndex;
 pub use materials::{MaterialId, Materials};
 pub use metal::Metal;
@@ -89,6 +91,8 @@ pub enum Material {
     Classic(ClassicMaterial),
     /// What a table says.
     Tabulated(TabulatedMaterial),
+    /// Hair and fur.
+    Hair(HairMaterial),
     /// One of two others.
     Mix(MixMaterial),
     /// None: the surface only bounds participating media, and light passes it.
@@ -165,6 +169,11 @@ pub const MATERIALS: &[MaterialSpec] = &[
         parameters: TabulatedMaterial::PARAMETERS,
     },
     MaterialSpec {
+        name: "hair",
+        doc: "Hair and fur: fibres along u, which v goes across.",
+        parameters: HairMaterial::PARAMETERS,
+    },
+    MaterialSpec {
         name: "mix",
         doc: "One of two materials at each point, in a given proportion.",
         parameters: MixMaterial::PARAMETERS,
@@ -204,6 +213,7 @@ impl Material {
             }
             "principled" => Self::Principled(PrincipledMaterial::build(p, materials)),
             "tabulated" => Self::Tabulated(TabulatedMaterial::build(p, materials)?),
+            "hair" => Self::Hair(HairMaterial::build(p, materials)),
             "mix" => Self::Mix(MixMaterial::build(p, named)?),
             "interface" | "none" | "" => Self::Interface,
             other => {
@@ -232,6 +242,7 @@ impl Material {
             Self::Principled(material) => material.bsdf(textures, ctx, lambda),
             Self::Classic(material) => BsdfKind::Classic(material.bsdf(textures, ctx, lambda)),
             Self::Tabulated(material) => material.bsdf(lambda),
+            Self::Hair(material) => material.bsdf(textures, ctx, lambda),
             Self::Mix(_) | Self::Interface => return None,
         };
         Some(Bsdf::new(ctx.ns, ctx.ng, ctx.shading_dpdu, kind))
@@ -251,6 +262,7 @@ impl Material {
             Self::Principled(material) => Some(&material.perturbation),
             Self::Classic(material) => Some(&material.perturbation),
             Self::Tabulated(material) => Some(&material.perturbation),
+            Self::Hair(material) => Some(&material.perturbation),
             Self::Mix(_) | Self::Interface => None,
         }
     }

@@ -164,8 +164,11 @@ fn documented_parameters_are_the_known_ones() {
                 "integer" => Value::Integers(vec![3]),
                 "float[]" => Value::Floats(vec![-1.0, -1.0, 1.0, 20.0]),
                 _ if parameter.name == "strength" => floats(0.5),
-                _ if matches!((spec.name, parameter.name), ("smoothcoat", "eta") | (_, "ior")) => floats(1.4),
-                _ if parameter.name == "reflectance" && parameter.default.is_empty() => continue,
+                _ if matches!((spec.name, parameter.name), ("smoothcoat" | "hair", "eta") | (_, "ior")) => {
+                    floats(1.4)
+                }
+                // In place of others that are given.
+                "spectrum texture" if parameter.default.is_empty() => continue,
                 _ => floats(0.3),
             };
             entity = entity.with(parameter.name, value);
@@ -351,6 +354,36 @@ fn tables_are_examined() {
     assert_eq!(complaints(Some("bad")), []);
     assert_eq!(complaints(None)[0].0, Severity::Error);
     assert_eq!(complaints(Some("none"))[0].0, Severity::Error);
+}
+
+/// Hair is brown unless told otherwise, by one of three ways; v is where across a fibre it is seen.
+#[test]
+fn hair_is_colored_in_one_way() {
+    let mut fixture = Fixture::default();
+    let mut albedo = |entity: &Entity| {
+        let BsdfKind::Hair(hair) = kind_despite_warnings(&mut fixture, entity) else { panic!("no hair") };
+        hair.albedo(Vector3::new(0.0, 0.6, 0.8))[1]
+    };
+    let hair = || plain("hair");
+    let brown = albedo(&hair());
+    assert_eq!(brown, albedo(&hair().with("eumelanin", floats(1.3))));
+    assert!(albedo(&hair().with("pheomelanin", floats(0.3))) > brown);
+    assert!((albedo(&hair().with("sigma_a", floats(0.0))) - 1.0).abs() < 1e-5);
+    assert!((albedo(&hair().with("reflectance", floats(1.0))) - 1.0).abs() < 1e-5);
+    let grey = albedo(&hair().with("color", floats(0.3)));
+    assert!(brown < grey && grey < 1.0, "{brown} {grey}");
+    assert_eq!(grey, albedo(&hair().with("reflectance", floats(0.3)).with("eumelanin", floats(9.0))));
+
+    let mut complaints = |entity: Entity| {
+        let (_, diagnostics) = fixture.build(&entity);
+        diagnostics.list().iter().map(|problem| problem.message.clone()).collect::<Vec<_>>()
+    };
+    let both = hair().with("eumelanin", floats(1.0)).with("pheomelanin", floats(1.0));
+    assert_eq!(complaints(both), [""; 0]);
+    let twice = hair().with("sigma_a", floats(0.1)).with("color", floats(0.3));
+    assert_eq!(complaints(twice), ["\"color\" is ignored, as \"sigma_a\" is given"]);
+    assert!(complaints(hair().with("beta_m", floats(0.0)))[0].contains("taken as 0.01"));
+    assert!(complaints(hair().with("eta", floats(0.0)))[0].contains("taken as 1"));
 }
 
 fn kind_despite_warnings(fixture: &mut Fixture, entity: &Entity) -> BsdfKind {

@@ -35,6 +35,7 @@ impl Material {
                 mix.amount.constant().is_some()
                     && mix.materials.iter().all(|part| materials.is_uniform(*part))
             }
+            Self::Hair(_) => false,
             Self::ThinDielectric(_) | Self::Tabulated(_) | Self::Interface => true,
         }
     }

@@ -37,27 +37,26 @@ impl PartialEq for Tabulated {
     }
 }
 
-impl Tabulated {
-    fn spectrum(&self, rgb: [f32; 3]) -> Sampled {
-        if rgb == [0.0; 3] {
-            return Sampled::ZERO;
-        }
-        let space = ColorSpace::get(ColorSpaceName::Srgb);
-        if self.lambda.is_bands() {
-            return self.lambda.of_bands(space.reflectance_bands(rgb));
-        }
-        let (scale, shape) = space.uplift_unbounded(rgb);
-        shape.sample(&self.lambda) * scale
+/// The smooth spectrum of a linear sRGB colour, not negative and without upper limit, at the wavelengths of a path.
+pub(crate) fn spectrum_of_color(rgb: [f32; 3], lambda: &Wavelengths) -> Sampled {
+    if rgb == [0.0; 3] {
+        return Sampled::ZERO;
     }
+    let space = ColorSpace::get(ColorSpaceName::Srgb);
+    if lambda.is_bands() {
+        return lambda.of_bands(space.reflectance_bands(rgb));
+    }
+    let (scale, shape) = space.uplift_unbounded(rgb);
+    shape.sample(lambda) * scale
 }
 
 impl Lobed for Tabulated {
     fn diffuse(&self, _to: Vector3, _from: Vector3) -> Sampled {
-        self.spectrum(self.table.diffuse())
+        spectrum_of_color(self.table.diffuse(), &self.lambda)
     }
 
     fn glossy(&self, to: Vector3, from: Vector3) -> Sampled {
-        self.spectrum(self.table.glossy(to, from))
+        spectrum_of_color(self.table.glossy(to, from), &self.lambda)
     }
 
     fn shares(&self, _wo: Vector3) -> Shares {

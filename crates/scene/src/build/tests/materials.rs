@@ -93,7 +93,7 @@ fn long_chains_of_mixtures() {
 /// Materials that only pbrt-v4 has look grey.
 #[test]
 fn missing_materials_are_grey() {
-    for name in ["hair", "measured", "subsurface"] {
+    for name in ["measured", "subsurface"] {
         let entity = here(Entity::new(name).with("filename", strings(&["a.bsdf"])));
         let document = document(vec![named_material("m", entity)], "m");
         let scene = warning_here(&document, &format!("the material \"{name}\" is not available yet"));
