@@ -5,12 +5,11 @@
 //! Smith's shadowing in place of Gaussian slopes and V-grooves; see [`super::microfacet`] for what is lost. Other facets are
 //! a parameter.
 
-use etendue_math::{Point2, Vector3};
+use etendue_math::{Point2, Vector3, sqr};
 use etendue_spectrum::Sampled;
 
 use super::facetted::Facets;
-use super::fresnel::reflect;
-use super::local::{abs_cos, mirror, same_hemisphere};
+use super::local::{mirror, same_hemisphere};
 use super::microfacet::Microfacets;
 use super::{BsdfSample, Lobes};
 
@@ -44,9 +43,10 @@ impl<F: Facets> Conductor<F> {
     #[inline]
     #[must_use]
     pub fn eval_and_pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> (Sampled, f32) {
-        let Some(wm) = self.half_vector(wo, wi, lobes) else { return (Sampled::ZERO, 0.0) };
-        let (reflection, pdf_w) = self.microfacets.reflection(wo, wi, wm);
-        (self.microfacets.metal_reflectance(wo.dot(wm), self.eta, self.k) * reflection, pdf_w) // [SPEC BRDF-16]
+        let Some(sum) = self.sum(wo, wi, lobes) else { return (Sampled::ZERO, 0.0) };
+        let (reflection, pdf_w) = self.microfacets.reflection(wo, wi, sum);
+        let cos2 = 0.25 * sum.length_squared();
+        (self.microfacets.metal_reflectance(cos2, self.eta, self.k) * reflection, pdf_w) // [SPEC BRDF-16]
     }
 
     /// The mirror direction of a facet visible from `wo`.
@@ -57,19 +57,21 @@ impl<F: Facets> Conductor<F> {
             return None;
         }
         if self.microfacets.is_smooth() {
-            let fresnel = self.microfacets.metal_reflectance(abs_cos(wo), self.eta, self.k);
+            let fresnel = self.microfacets.metal_reflectance(sqr(wo.z), self.eta, self.k);
             return Some(BsdfSample::specular(mirror(wo), fresnel, 1.0, Lobes::SPECULAR_REFLECT, 1.0));
         }
-        let wm = self.microfacets.sample_visible_normal(wo, u);
-        let wi = reflect(wo, wm);
+        // Mirroring and Fresnel's equations need no unit vector.
+        let wm = self.microfacets.sample_facet(wo, u);
+        let (dot, length2) = (wo.dot(wm), wm.length_squared());
+        let share = dot / length2;
+        let wi = wm * (2.0 * share) - wo; // [SPEC FRES-1]
         if !same_hemisphere(wo, wi) {
             return None;
         }
-        let cos_m = wo.dot(wm).abs();
         let (_, pdf_w) = self.microfacets.reflection(wo, wi, wm);
         (pdf_w > 0.0 && pdf_w.is_finite()).then(|| BsdfSample {
             wi,
-            weight: self.microfacets.metal_reflectance(cos_m, self.eta, self.k)
+            weight: self.microfacets.metal_reflectance(dot * share, self.eta, self.k)
                 * self.microfacets.g_over_g1(wo, wi),
             pdf_w,
             pmf: 0.0,
@@ -83,18 +85,20 @@ impl<F: Facets> Conductor<F> {
     #[inline]
     #[must_use]
     pub fn pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> f32 {
-        let Some(wm) = self.half_vector(wo, wi, lobes) else { return 0.0 };
-        self.microfacets.reflection(wo, wi, wm).1
+        let Some(sum) = self.sum(wo, wi, lobes) else { return 0.0 };
+        self.microfacets.reflection(wo, wi, sum).1
     }
 
-    /// The facet normal that reflects `wo` to `wi`, in the upper hemisphere; `None` if nothing glossy happens.
+    /// `wo + wi`, which is normal to the facet that reflects one to the other and `2 cos` long; `None` if nothing glossy
+    /// happens.
     #[inline]
-    fn half_vector(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> Option<Vector3> {
+    fn sum(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> Option<Vector3> {
         if self.microfacets.is_smooth() || !lobes.contains(Lobes::GLOSSY_REFLECT) || !same_hemisphere(wo, wi)
         {
             return None;
         }
-        let wm = (wo + wi).try_normalized()?;
-        Some(if wm.z < 0.0 { -wm } else { wm })
+        let sum = wo + wi;
+        // Of opposite directions rounding alone is left.
+        (sum.length_squared() > 1e-18).then_some(sum)
     }
 }

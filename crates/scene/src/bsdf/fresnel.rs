@@ -67,23 +67,29 @@ pub fn fresnel_dielectric(cos_i: f32, eta: f32) -> f32 {
 #[inline]
 #[must_use]
 pub fn fresnel_conductor(cos_i: f32, eta: Sampled, k: Sampled) -> Sampled {
-    let cos = cos_i.abs().min(1.0);
+    fresnel_conductor_of_cos2(sqr(cos_i), eta, k)
+}
+
+/// [`fresnel_conductor`] by the squared cosine, which is all it depends on.
+#[inline]
+#[must_use]
+pub fn fresnel_conductor_of_cos2(cos2: f32, eta: Sampled, k: Sampled) -> Sampled {
+    let cos2 = cos2.min(1.0);
     let (eta, k) = (eta.to_array(), k.to_array());
     let mut reflected = [0.0; etendue_spectrum::N_LAMBDA];
     for (i, r) in reflected.iter_mut().enumerate() {
-        *r = fresnel_complex(cos, eta[i], k[i]);
+        *r = fresnel_complex(cos2, eta[i], k[i]);
     }
     Sampled::from_array(reflected)
 }
 
-/// One wavelength of [`fresnel_conductor`], `cos` in [0, 1].
+/// One wavelength of [`fresnel_conductor`], `cos2` in [0, 1].
 #[inline]
-fn fresnel_complex(cos: f32, eta: f32, k: f32) -> f32 {
-    let cos2 = sqr(cos);
+fn fresnel_complex(cos2: f32, eta: f32, k: f32) -> f32 {
     let sin2 = 1.0 - cos2;
     let real = sqr(eta) - sqr(k) - sin2;
     let a2_b2 = (sqr(real) + 4.0 * sqr(eta) * sqr(k)).sqrt();
-    let two_a_cos = 2.0 * cos * (0.5 * (a2_b2 + real)).max(0.0).sqrt();
+    let two_a_cos = (2.0 * cos2 * (a2_b2 + real)).max(0.0).sqrt();
     let sum = a2_b2 + cos2;
     if sum + two_a_cos <= 0.0 {
         return 1.0; // Grazing incidence where both indices are equal: the limit of any other index.

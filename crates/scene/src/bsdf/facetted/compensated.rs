@@ -91,7 +91,7 @@ fn later_bounces(conductor: &Conductor<AnyFacets>) -> Sampled {
     if mean > 1.0 - 1e-5 {
         return Sampled::ZERO;
     }
-    let f = mean_over_cosines(|cos| facets.metal_reflectance(cos, conductor.eta, conductor.k));
+    let f = mean_over_cosines(|cos| facets.metal_reflectance(cos * cos, conductor.eta, conductor.k));
     f * f * mean / (Sampled::ONE - f * (1.0 - mean)) * (FRAC_1_PI / (1.0 - mean)) // [Kulla and Conty 2017]
 }
 
@@ -113,7 +113,7 @@ impl Lobed for CompensatedConductor {
     }
 
     fn mirror(&self, wo: Vector3) -> Sampled {
-        self.conductor.microfacets.metal_reflectance(wo.z, self.conductor.eta, self.conductor.k)
+        self.conductor.microfacets.metal_reflectance(sqr(wo.z), self.conductor.eta, self.conductor.k)
     }
 
     fn shares(&self, _wo: Vector3) -> Shares {

@@ -4,7 +4,9 @@ use etendue_math::{Point2, Vector3};
 use etendue_spectrum::Sampled;
 
 use super::Beckmann;
-use crate::bsdf::fresnel::{fresnel_conductor, fresnel_dielectric, fresnel_schlick, schlick_weight};
+use crate::bsdf::fresnel::{
+    fresnel_conductor, fresnel_conductor_of_cos2, fresnel_dielectric, fresnel_schlick, schlick_weight,
+};
 use crate::bsdf::microfacet::Microfacets;
 
 /// A distribution of small mirrors, with what they reflect.
@@ -24,10 +26,18 @@ pub trait Facets: Copy {
     /// A normal visible from `wo`, in the upper hemisphere.
     fn sample_visible_normal(self, wo: Vector3, u: Point2) -> Vector3;
 
+    /// [`Self::sample_visible_normal`] times a length.
+    #[inline]
+    fn sample_facet(self, wo: Vector3, u: Point2) -> Vector3 {
+        self.sample_visible_normal(wo, u)
+    }
+
     /// `D(wm) G(wo, wi) / (4 |cos_o| |cos_i|)`, and the density in 1/sr of `wi` if visible normals are sampled, where
-    /// `wm` reflects `wo` to `wi`.
+    /// the facet whose normal is `wm`, of any length, reflects `wo` to `wi`.
     #[inline]
     fn reflection(self, wo: Vector3, wi: Vector3, wm: Vector3) -> (f32, f32) {
+        let wm = wm.normalized();
+        let wm = if wm.z < 0.0 { -wm } else { wm };
         let pdf_w = self.visible_normal_pdf(wo, wm) / (4.0 * wo.dot(wm).abs());
         (0.25 * self.d(wm) * self.g_over_cosines(wo, wi), pdf_w)
     }
@@ -38,10 +48,10 @@ pub trait Facets: Copy {
         fresnel_dielectric(cos, eta)
     }
 
-    /// Fraction of light reflected by metal.
+    /// Fraction of light reflected by metal, from the squared cosine.
     #[inline]
-    fn metal_reflectance(self, cos: f32, eta: Sampled, k: Sampled) -> Sampled {
-        fresnel_conductor(cos, eta, k)
+    fn metal_reflectance(self, cos2: f32, eta: Sampled, k: Sampled) -> Sampled {
+        fresnel_conductor_of_cos2(cos2, eta, k)
     }
 }
 
@@ -79,6 +89,11 @@ impl Facets for Microfacets {
     #[inline]
     fn sample_visible_normal(self, wo: Vector3, u: Point2) -> Vector3 {
         Self::sample_visible_normal(self, wo, u)
+    }
+
+    #[inline]
+    fn sample_facet(self, wo: Vector3, u: Point2) -> Vector3 {
+        Self::sample_facet(self, wo, u)
     }
 
     #[inline]
@@ -174,6 +189,10 @@ impl Facets for AnyFacets {
         each!(self, facets => facets.sample_visible_normal(wo, u))
     }
 
+    fn sample_facet(self, wo: Vector3, u: Point2) -> Vector3 {
+        each!(self, facets => Facets::sample_facet(facets, wo, u))
+    }
+
     fn reflection(self, wo: Vector3, wi: Vector3, wm: Vector3) -> (f32, f32) {
         each!(self, facets => Facets::reflection(facets, wo, wi, wm))
     }
@@ -185,12 +204,12 @@ impl Facets for AnyFacets {
         }
     }
 
-    fn metal_reflectance(self, cos: f32, eta: Sampled, k: Sampled) -> Sampled {
+    fn metal_reflectance(self, cos2: f32, eta: Sampled, k: Sampled) -> Sampled {
         match self.fresnel {
-            FresnelForm::Exact => fresnel_conductor(cos, eta, k),
+            FresnelForm::Exact => fresnel_conductor_of_cos2(cos2, eta, k),
             FresnelForm::Schlick => {
                 let f0 = fresnel_conductor(1.0, eta, k);
-                f0 + (Sampled::ONE - f0) * schlick_weight(cos.abs())
+                f0 + (Sampled::ONE - f0) * schlick_weight(cos2.sqrt())
             }
         }
     }
