@@ -24,7 +24,8 @@ mod tests;
 
 pub(crate) use build::{BuildPrimitive, TriangleSource, build};
 pub(crate) use pair::{append_pairs, second_of};
-use ray::TraversalRay;
+pub(crate) use ray::WideRay;
+use ray::{TraversalRay, WideBounds};
 
 use etendue_math::{Bounds3, Ray};
 use node::{INNER, ITEMS, Node, TRIANGLES, leaf_range};
@@ -54,13 +55,17 @@ pub(crate) enum Verdict {
 }
 
 /// Receives what a ray may hit, roughly front to back.
-pub(crate) trait Visitor {
+pub(crate) trait Visitor<'a> {
     /// True where any hit will do, so that the order of visits matters little.
     const ANY: bool;
     /// A triangle is hit at `t`; `b` are the weights of its second and third vertex.
     fn triangle(&mut self, triangle: PrimitiveRef, t: f32, b: [f32; 2]) -> Verdict;
-    /// The ray meets the box of an item no farther than `t_max`.
-    fn item(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict;
+    /// The ray meets the box of an item that is no instance no farther than `t_max`.
+    fn shape(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict;
+    /// The ray meets the box of an instance: what follows is in its group, until it leaves.
+    fn enter(&mut self, instance: u32) -> (&'a Bvh, WideRay);
+    /// What follows is in the world again.
+    fn leave(&mut self);
     /// The children of a node are about to be tested.
     fn note_node(&mut self);
     /// A block of triangles is about to be tested.
@@ -73,7 +78,7 @@ pub(crate) struct Bvh {
     nodes: Vec<Node>,
     blocks: Vec<TriangleBlock>,
     items: Vec<PrimitiveRef>,
-    bounds: Bounds3,
+    bounds: WideBounds,
 }
 
 impl Bvh {
@@ -83,7 +88,7 @@ impl Bvh {
         let mut depths = vec![0_u8; nodes.len()];
         for (index, node) in nodes.iter().enumerate() {
             let depth = depths[index] + 1;
-            assert!(usize::from(depth) * 7 < traverse::MAX_STACK, "the tree is too deep");
+            assert!(usize::from(depth) * 7 < traverse::MAX_TREE_STACK, "the tree is too deep");
             for child in node.children {
                 match child >> 30 {
                     INNER => {
@@ -96,12 +101,12 @@ impl Bvh {
                 }
             }
         }
-        Self { nodes, blocks, items, bounds }
+        Self { nodes, blocks, items, bounds: bounds.into() }
     }
 
     /// Box around all primitives.
-    pub(crate) const fn bounds(&self) -> Bounds3 {
-        self.bounds
+    pub(crate) fn bounds(&self) -> Bounds3 {
+        self.bounds.into()
     }
 
     /// Number of inner nodes.
@@ -148,7 +153,7 @@ impl Kernel {
 
     /// Shows the visitor every primitive of the tree that the ray may hit with t in (0, `t_max`], near ones first.
     #[inline(always)]
-    pub(crate) fn traverse(self, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {
+    pub(crate) fn traverse<'a>(self, bvh: &'a Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor<'a>) {
         #[cfg(target_arch = "x86_64")]
         if let Some(lanes) = self.avx2 {
             lanes.traverse(bvh, ray, t_max, visitor);
@@ -159,12 +164,12 @@ impl Kernel {
 }
 
 #[inline(never)]
-fn traverse_portably(bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {
+fn traverse_portably<'a>(bvh: &'a Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor<'a>) {
     traverse::traverse(lanes::Portable, bvh, ray, t_max, visitor);
 }
 
 /// The test of the leaves on a single triangle: t and the weights of the second and third vertex.
 pub(crate) fn intersect_triangle(ray: &Ray, triangle: &[[f32; 3]; 3]) -> Option<(f32, [f32; 2])> {
-    let prepared = TraversalRay::new(ray, &Bounds3 { min: ray.origin, max: ray.origin })?;
+    let prepared = TraversalRay::new(&ray.into(), &Bounds3 { min: ray.origin, max: ray.origin }.into())?;
     triangle_block::intersect(&prepared, triangle)
 }

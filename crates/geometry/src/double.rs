@@ -74,9 +74,9 @@ pub(crate) struct NormalMap {
 }
 
 impl NormalMap {
-    /// The map of normals that belongs to `b_from_a`.
-    pub(crate) fn new(a_from_b: &DAffine3) -> Self {
-        Self { matrix: a_from_b.matrix3.transpose() }
+    /// The map of normals that belongs to `b_from_a`, by the linear part of its inverse.
+    pub(crate) fn new(a_from_b: &DMat3) -> Self {
+        Self { matrix: a_from_b.transpose() }
     }
 
     /// The unit normal and its derivatives after the map.

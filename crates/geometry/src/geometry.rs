@@ -3,7 +3,7 @@
 use etendue_math::{Bounds3, Point2, Ray};
 
 use crate::builder::WORLD;
-use crate::bvh::{Bvh, INSTANCE, Kernel, PrimitiveRef, Verdict, Visitor};
+use crate::bvh::{Bvh, Kernel, PrimitiveRef, Verdict, Visitor, WideRay};
 use crate::hit::{GeometryId, Hit, NO_INSTANCE, SurfaceDerivatives, SurfacePoint};
 use crate::instance::Instance;
 use crate::mesh::heap;
@@ -87,9 +87,16 @@ impl Geometry {
         filter: &F,
         work: W,
     ) -> Option<Hit> {
-        let mut search =
-            Search::<_, _, ANY> { geometry: self, ray, instance: NO_INSTANCE, filter, work, best: None };
-        search.run(WORLD, t_max.next_down());
+        let mut search = Search::<_, _, ANY> {
+            geometry: self,
+            world_ray: ray,
+            group_ray: ray.into(),
+            instance: NO_INSTANCE,
+            filter,
+            work,
+            best: None,
+        };
+        self.kernel.traverse(&self.groups[WORLD as usize], ray, t_max.next_down(), &mut search);
         search.best
     }
 
@@ -175,8 +182,9 @@ impl Geometry {
 /// One question in progress: the nearest hit, or `ANY` hit.
 struct Search<'a, F, W, const ANY: bool> {
     geometry: &'a Geometry,
+    world_ray: &'a Ray,
     /// The ray in the space of the group that is searched.
-    ray: &'a Ray,
+    group_ray: WideRay,
     instance: u32,
     filter: &'a F,
     work: W,
@@ -184,13 +192,6 @@ struct Search<'a, F, W, const ANY: bool> {
 }
 
 impl<F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Search<'_, F, W, ANY> {
-    /// Searches a group for hits with t in (0, `t_max`].
-    #[inline]
-    fn run(&mut self, group: u32, t_max: f32) {
-        let bvh = &self.geometry.groups[group as usize];
-        self.geometry.kernel.traverse(bvh, self.ray, t_max, self);
-    }
-
     #[inline]
     fn consider(&mut self, reference: PrimitiveRef, t: f32, uv: [f32; 2]) -> Verdict {
         let hit = Hit {
@@ -220,37 +221,19 @@ impl<F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Search<'_, F, W, ANY> {
         Verdict::Shorten(hit.t)
     }
 
-    #[inline(always)]
-    fn enter(&mut self, index: u32, t_max: f32) -> Verdict {
-        let instance = &self.geometry.instances[index as usize];
-        self.work.note_instance();
-        let mut inner = Search::<_, _, ANY> {
-            geometry: self.geometry,
-            ray: &instance.group_ray(self.ray),
-            instance: index,
-            filter: self.filter,
-            work: self.work,
-            best: None,
-        };
-        inner.run(instance.group, t_max);
-        match inner.best {
-            None => Verdict::Pass,
-            Some(hit) => self.accept(hit),
-        }
-    }
-
     /// Tests a primitive that is no triangle.
     #[inline(never)]
-    fn shape(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict {
+    fn test_shape(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict {
         let entity = &self.geometry.entities[item.geometry as usize];
+        let ray = &self.group_ray.at(self.world_ray.time);
         if let Entity::Sphere(sphere) = entity {
-            let Some((near, far)) = sphere.globe().intersect(self.ray) else { return Verdict::Pass };
+            let Some((near, far)) = sphere.globe().intersect(ray) else { return Verdict::Pass };
             return match (self.found(item, near, [0.0; 2], t_max), far) {
                 (Verdict::Pass, Some(far)) => self.found(item, far, [0.0; 2], t_max),
                 (verdict, _) => verdict,
             };
         }
-        for candidate in entity.intersect(item.primitive, self.ray).into_iter().flatten() {
+        for candidate in entity.intersect(item.primitive, ray).into_iter().flatten() {
             let verdict = self.found(item, candidate.t, [candidate.u as f32, candidate.v as f32], t_max);
             if verdict != Verdict::Pass {
                 return verdict;
@@ -273,7 +256,7 @@ const fn order(hit: &Hit) -> (u32, u32, u32) {
     (hit.instance, hit.geometry.0, hit.primitive)
 }
 
-impl<F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Visitor for Search<'_, F, W, ANY> {
+impl<'a, F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Visitor<'a> for Search<'a, F, W, ANY> {
     const ANY: bool = ANY;
 
     #[inline]
@@ -283,8 +266,23 @@ impl<F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Visitor for Search<'_, F, W,
     }
 
     #[inline(always)]
-    fn item(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict {
-        if item.geometry == INSTANCE { self.enter(item.primitive, t_max) } else { self.shape(item, t_max) }
+    fn shape(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict {
+        self.test_shape(item, t_max)
+    }
+
+    #[inline(always)]
+    fn enter(&mut self, index: u32) -> (&'a Bvh, WideRay) {
+        self.work.note_instance();
+        let instance = &self.geometry.instances[index as usize];
+        self.instance = index;
+        self.group_ray = instance.carried(self.world_ray);
+        (&self.geometry.groups[instance.group as usize], self.group_ray)
+    }
+
+    #[inline(always)]
+    fn leave(&mut self) {
+        self.instance = NO_INSTANCE;
+        self.group_ray = self.world_ray.into();
     }
 
     #[inline(always)]

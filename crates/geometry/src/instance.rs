@@ -7,8 +7,9 @@
 mod tests;
 
 use etendue_math::{AnimatedTransform, Bounds3, Motion, Normal3, Ray, Vector3};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3, Vec4};
 
+use crate::bvh::WideRay;
 use crate::double::{self, NormalMap};
 use crate::hit::{SurfaceDerivatives, SurfacePoint};
 use crate::shape::LocalSurface;
@@ -27,12 +28,17 @@ pub(crate) struct Instance {
 #[derive(Clone, Copy, Debug)]
 struct Maps {
     world_from_group: DAffine3,
-    group_from_world: DAffine3,
+    group_from_world: Columns,
 }
 
 impl Maps {
     fn new(world_from_group: DAffine3) -> Self {
-        Self { world_from_group, group_from_world: world_from_group.inverse() }
+        Self { world_from_group, group_from_world: Columns::new(&world_from_group.inverse()) }
+    }
+
+    #[inline(never)]
+    fn at(motion: &Motion, time: f32) -> Self {
+        Self::new(double::affine(&motion.at(time)))
     }
 }
 
@@ -63,23 +69,32 @@ impl Instance {
     }
 
     fn maps(&self, time: f32) -> Maps {
-        self.motion.as_ref().map_or(self.maps, |motion| Maps::new(double::affine(&motion.at(time))))
+        self.motion.as_ref().map_or(self.maps, |motion| Maps::at(motion, time))
     }
 
     /// The ray in the space of the group.
-    #[inline]
     pub(crate) fn group_ray(&self, ray: &Ray) -> Ray {
-        if self.motion.is_some() {
-            return carried(&self.maps(ray.time).group_from_world, ray);
-        }
-        carried(&self.maps.group_from_world, ray)
+        self.carried(ray).at(ray.time)
+    }
+
+    /// The same, ready for the hierarchy.
+    #[inline(always)]
+    pub(crate) fn carried(&self, ray: &Ray) -> WideRay {
+        let moved;
+        let columns = if let Some(motion) = &self.motion {
+            moved = Maps::at(motion, ray.time).group_from_world;
+            &moved
+        } else {
+            &self.maps.group_from_world
+        };
+        columns.carry(ray)
     }
 
     /// Carries a point, also given before rounding, to the world.
     pub(crate) fn world_point(&self, p: DVec3, point: &SurfacePoint, time: f32) -> SurfacePoint {
         let maps = self.maps(time);
         let map = &maps.world_from_group;
-        let normals = NormalMap::new(&maps.group_from_world);
+        let normals = NormalMap::new(&maps.group_from_world.linear());
         let normal = |n: Normal3| double::to_normal(normals.apply(double::normal(n), [DVec3::ZERO; 2]).0);
         let p = double::to_point(map.transform_point3(p));
         SurfacePoint {
@@ -97,7 +112,7 @@ impl Instance {
         let vector =
             |v: Vector3| double::to_vector(maps.world_from_group.transform_vector3(double::vector(v)));
         let d = &local.derivatives;
-        let normals = NormalMap::new(&maps.group_from_world);
+        let normals = NormalMap::new(&maps.group_from_world.linear());
         let (_, dn) = normals.apply(double::normal(local.point.ns), [d.dndu, d.dndv].map(double::vector));
         SurfaceDerivatives {
             dpdu: vector(d.dpdu),
@@ -115,12 +130,31 @@ impl Instance {
     }
 }
 
-/// The ray after a map, rounded once.
-#[inline(always)]
-fn carried(map: &DAffine3, ray: &Ray) -> Ray {
-    let origin = map.transform_point3(double::point(ray.origin));
-    let direction = map.transform_vector3(double::vector(ray.direction));
-    Ray { origin: double::to_point(origin), direction: double::to_vector(direction), time: ray.time }
+/// An affine map by its columns, each in four lanes of which the last holds 0: rays enter instances often.
+#[derive(Clone, Copy, Debug)]
+struct Columns([[f64; 4]; 4]);
+
+impl Columns {
+    fn new(map: &DAffine3) -> Self {
+        let m = &map.matrix3;
+        Self([m.x_axis, m.y_axis, m.z_axis, map.translation].map(|c| [c.x, c.y, c.z, 0.0]))
+    }
+
+    fn linear(&self) -> DMat3 {
+        let [x, y, z, _] = self.0.map(|c| DVec3::new(c[0], c[1], c[2]));
+        DMat3::from_cols(x, y, z)
+    }
+
+    /// The ray after the map, rounded once.
+    #[inline(always)]
+    fn carry(&self, ray: &Ray) -> WideRay {
+        let [x, y, z, translation] = &self.0;
+        let [px, py, pz] = [ray.origin.x, ray.origin.y, ray.origin.z].map(f64::from);
+        let [dx, dy, dz] = [ray.direction.x, ray.direction.y, ray.direction.z].map(f64::from);
+        let p = std::array::from_fn(|i| (x[i] * px + y[i] * py + z[i] * pz + translation[i]) as f32);
+        let d = std::array::from_fn(|i| (x[i] * dx + y[i] * dy + z[i] * dz) as f32);
+        WideRay { origin: Vec4::from_array(p), direction: Vec4::from_array(d) }
+    }
 }
 
 /// The error in the world of a ray that starts at the point and has its origin rounded in the space of the group.

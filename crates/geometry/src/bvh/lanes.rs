@@ -43,14 +43,11 @@ pub(super) trait Lanes: Copy {
     fn swap_halves(self, a: Self::Floats) -> Self::Floats;
 }
 
-/// Nodes still to visit.
+/// Room for nodes still to visit. Traversal keeps the number of entries in a register of its own.
 pub(super) trait Stack {
     fn new() -> Self;
-    fn len(&self) -> usize;
-    fn pop(&mut self) -> Option<Entry>;
-    fn push(&mut self, entry: Entry);
-    /// Puts an entry among those from `start` on, which stand in falling order.
-    fn insert(&mut self, start: usize, entry: Entry);
+    fn read(&self, slot: usize) -> Entry;
+    fn write(&mut self, slot: usize, entry: Entry);
 }
 
 /// Works everywhere: two vectors of four.
@@ -139,43 +136,43 @@ impl Lanes for Portable {
     }
 }
 
-/// A stack whose every access is checked.
+/// A stack whose every access is checked. Few rays need more than the first entries, which are cheap to clear.
 pub(super) struct CheckedStack {
-    entries: [Entry; MAX_STACK],
-    len: usize,
+    first: [Entry; Self::N_FIRST],
+    others: Vec<Entry>,
+}
+
+impl CheckedStack {
+    const N_FIRST: usize = 32;
 }
 
 impl Stack for CheckedStack {
     #[inline(always)]
     fn new() -> Self {
-        Self { entries: [Entry::LAST; MAX_STACK], len: 0 }
+        Self { first: [Entry::LAST; Self::N_FIRST], others: Vec::new() }
     }
 
     #[inline(always)]
-    fn len(&self) -> usize {
-        self.len
+    fn read(&self, slot: usize) -> Entry {
+        if slot < Self::N_FIRST { self.first[slot] } else { self.others[slot - Self::N_FIRST] }
     }
 
     #[inline(always)]
-    fn pop(&mut self) -> Option<Entry> {
-        self.len = self.len.checked_sub(1)?;
-        Some(self.entries[self.len])
-    }
-
-    #[inline(always)]
-    fn push(&mut self, entry: Entry) {
-        self.entries[self.len] = entry;
-        self.len += 1;
-    }
-
-    #[inline(always)]
-    fn insert(&mut self, start: usize, entry: Entry) {
-        let mut slot = self.len;
-        while slot > start && self.entries[slot - 1].is_before(entry) {
-            self.entries[slot] = self.entries[slot - 1];
-            slot -= 1;
+    fn write(&mut self, slot: usize, entry: Entry) {
+        if slot < Self::N_FIRST {
+            self.first[slot] = entry;
+        } else {
+            self.write_other(slot - Self::N_FIRST, entry);
         }
-        self.entries[slot] = entry;
-        self.len += 1;
+    }
+}
+
+impl CheckedStack {
+    #[cold]
+    fn write_other(&mut self, slot: usize, entry: Entry) {
+        if self.others.is_empty() {
+            self.others.resize(MAX_STACK, Entry::LAST);
+        }
+        self.others[slot] = entry;
     }
 }

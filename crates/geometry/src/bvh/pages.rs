@@ -3,8 +3,8 @@
 
 #![allow(unsafe_code, reason = "advice on memory is given by a system call")]
 
-/// Arrays below this size fit the table of pages anyway.
-const WORTH_BYTES: usize = 4 << 20;
+/// Arrays below this size hold no whole page.
+const WORTH_BYTES: usize = 2 << 20;
 
 /// An empty array for so many values, in large pages where it is large and the system has them.
 pub(super) fn vec_in_large_pages<T>(capacity: usize) -> Vec<T> {

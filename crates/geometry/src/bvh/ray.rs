@@ -5,8 +5,56 @@
 //! vertices to the origin of the ray, and a triangle which the test accepts is never culled with its box
 //! (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", JCGT 2(1), section 4).
 
-use etendue_math::{Bounds3, Ray};
+use etendue_math::{Bounds3, Point3, Ray, Vector3};
 use glam::Vec4;
+
+/// Origin and direction, whose fourth lanes are 0.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WideRay {
+    pub(crate) origin: Vec4,
+    pub(crate) direction: Vec4,
+}
+
+impl From<&Ray> for WideRay {
+    #[inline(always)]
+    fn from(Ray { origin: o, direction: d, .. }: &Ray) -> Self {
+        Self { origin: Vec4::new(o.x, o.y, o.z, 0.0), direction: Vec4::new(d.x, d.y, d.z, 0.0) }
+    }
+}
+
+impl WideRay {
+    /// The ray at a time.
+    #[inline]
+    pub(crate) fn at(&self, time: f32) -> Ray {
+        let Self { origin: o, direction: d } = self;
+        Ray { origin: Point3::new(o.x, o.y, o.z), direction: Vector3::new(d.x, d.y, d.z), time }
+    }
+}
+
+/// A box, whose fourth lanes are 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WideBounds {
+    min: Vec4,
+    max: Vec4,
+}
+
+impl From<Bounds3> for WideBounds {
+    fn from(Bounds3 { min, max }: Bounds3) -> Self {
+        Self { min: Vec4::new(min.x, min.y, min.z, 0.0), max: Vec4::new(max.x, max.y, max.z, 0.0) }
+    }
+}
+
+impl From<WideBounds> for Bounds3 {
+    fn from(WideBounds { min, max }: WideBounds) -> Self {
+        Self { min: Point3::new(min.x, min.y, min.z), max: Point3::new(max.x, max.y, max.z) }
+    }
+}
+
+impl Default for WideBounds {
+    fn default() -> Self {
+        Bounds3::EMPTY.into()
+    }
+}
 
 /// A ray made ready for slab tests and triangle tests.
 #[derive(Clone, Copy, Debug)]
@@ -40,12 +88,9 @@ impl TraversalRay {
 
     /// Prepares a ray for a tree with these bounds; `None` for rays that are not finite or have no direction.
     #[inline(always)]
-    pub(crate) fn new(ray: &Ray, bounds: &Bounds3) -> Option<Self> {
-        let origin = Vec4::new(ray.origin.x, ray.origin.y, ray.origin.z, 0.0);
-        let direction = Vec4::new(ray.direction.x, ray.direction.y, ray.direction.z, 0.0);
-        let low = Vec4::new(bounds.min.x, bounds.min.y, bounds.min.z, 0.0);
-        let high = Vec4::new(bounds.max.x, bounds.max.y, bounds.max.z, 0.0);
-        let reach = (high - origin).abs().max((low - origin).abs()).max_element();
+    pub(super) fn new(ray: &WideRay, bounds: &WideBounds) -> Option<Self> {
+        let WideRay { origin, direction } = *ray;
+        let reach = (bounds.max - origin).abs().max((bounds.min - origin).abs()).max_element();
         let step = Vec4::splat(5.0 * f32::EPSILON * reach).copysign(direction);
         let inverse = Vec4::ONE / direction;
         let d = direction.to_array();

@@ -40,7 +40,7 @@ impl Bvh {
         }
         if let Some(Box3 { min, max }) = bounds.first() {
             let point = |p: &[f32; 3]| Point3::new(p[0], p[1], p[2]);
-            self.bounds = Bounds3 { min: point(min), max: point(max) };
+            self.bounds = Bounds3 { min: point(min), max: point(max) }.into();
         }
         Some(blocks.iter().map(|block| block.1).sum())
     }

@@ -14,7 +14,7 @@ fn slab(min: [f32; 3], max: [f32; 3], ray: &Ray, t_max: f32) -> bool {
     node.set(3, &Box3 { min, max }, 7);
     let bounds =
         Bounds3 { min: Point3::new(min[0], min[1], min[2]), max: Point3::new(max[0], max[1], max[2]) };
-    let prepared = TraversalRay::new(ray, &bounds).expect("the ray is finite");
+    let prepared = TraversalRay::new(&ray.into(), &bounds.into()).expect("the ray is finite");
     node.test(Portable, &prepared, Portable.splat(t_max)).0 == 1 << 3
 }
 

@@ -4,13 +4,16 @@
 //! comes. Everything here is inlined into functions that are compiled for one instruction set each.
 
 use super::lanes::{Lanes, Stack};
-use super::node::{EMPTY, INNER, ITEMS, Node, TRIANGLES, leaf_range};
+use super::node::{self, EMPTY, INNER, ITEMS, Node, TRIANGLES, leaf_range};
 use super::triangle_block::Hits;
-use super::{Bvh, TraversalRay, Verdict, Visitor};
+use super::{Bvh, INSTANCE, TraversalRay, Verdict, Visitor, WideRay};
 use etendue_math::Ray;
 
-/// No descent stacks more entries: seven for each level of a tree as deep as `build.rs` lets it become.
-pub(super) const MAX_STACK: usize = 256;
+/// No descent into one tree stacks more entries: seven for each level of a tree as deep as `build.rs` lets it become, and one
+/// for the rest of a leaf.
+pub(super) const MAX_TREE_STACK: usize = 256;
+/// Entries of the world and of an instance.
+pub(super) const MAX_STACK: usize = 2 * MAX_TREE_STACK;
 
 /// A node or leaf still to visit, behind the ray parameter where the ray enters it: bits of floats that are not negative
 /// order like the floats, and ties go to the child.
@@ -38,6 +41,12 @@ impl Entry {
         Self((near[child].to_bits() as u64) << 32 | node.children[child] as u64)
     }
 
+    /// A child that is never dropped.
+    #[inline(always)]
+    const fn at_once(child: u32) -> Self {
+        Self(child as u64)
+    }
+
     #[inline(always)]
     const fn child(self) -> u32 {
         self.0 as u32
@@ -50,21 +59,30 @@ impl Entry {
 }
 
 /// See [`super::Kernel::traverse`].
+///
+/// An instance is entered on the same stack: its entries lie above those of the world, and when they are used up, the world's
+/// ray and tree come back.
 #[inline(always)]
-pub(super) fn traverse<L: Lanes, V: Visitor>(lanes: L, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut V) {
-    if bvh.nodes.is_empty() {
-        return;
-    }
-    let Some(ray) = TraversalRay::new(ray, &bvh.bounds) else { return };
-    let ray = &ray;
+pub(super) fn traverse<'a, L: Lanes, V: Visitor<'a>>(
+    lanes: L,
+    world: &'a Bvh,
+    ray: &Ray,
+    t_max: f32,
+    visitor: &mut V,
+) {
+    let Some(world_ray) = prepared(world, &ray.into()) else { return };
+    let mut instance_ray;
+    let (mut bvh, mut ray) = (world, &world_ray);
     let mut end = t_max;
-    let mut stack = L::Stack::new();
+    let (mut stack, mut len) = (L::Stack::new(), 0);
+    // Entries from here on belong to the instance, or to the world where there are none below.
+    let mut floor = 0;
     let mut current = 0;
     loop {
-        let descended = match current >> 30 {
+        current = match current >> 30 {
             INNER => {
                 visitor.note_node();
-                descend::<L, V>(lanes, lanes.node(bvh, current), ray, end, &mut stack)
+                descend::<L, V>(lanes, lanes.node(bvh, current), ray, end, &mut stack, &mut len)
             }
             TRIANGLES => {
                 if !visit_triangles(lanes, bvh, current, ray, &mut end, visitor) {
@@ -72,32 +90,57 @@ pub(super) fn traverse<L: Lanes, V: Visitor>(lanes: L, bvh: &Bvh, ray: &Ray, t_m
                 }
                 EMPTY
             }
-            _ => {
-                if !visit_items(bvh, current, &mut end, visitor) {
+            _ => match visit_items(bvh, current, &mut end, &mut stack, &mut len, visitor) {
+                Items::Stop => return,
+                Items::Done => EMPTY,
+                Items::Instance(instance) => {
+                    let (group, group_ray) = visitor.enter(instance);
+                    match prepared(group, &group_ray) {
+                        None => {
+                            visitor.leave();
+                            EMPTY
+                        }
+                        Some(prepared) => {
+                            instance_ray = prepared;
+                            (bvh, ray, floor) = (group, &instance_ray, len);
+                            0
+                        }
+                    }
+                }
+            },
+        };
+        while current == EMPTY {
+            if len == floor {
+                if floor == 0 {
                     return;
                 }
-                EMPTY
+                visitor.leave();
+                (bvh, ray, floor) = (world, &world_ray, 0);
             }
-        };
-        current = descended;
-        while current == EMPTY {
-            match stack.pop() {
-                None => return,
-                Some(entry) if entry.t() <= end => current = entry.child(),
-                Some(_) => {}
+            len -= 1;
+            let entry = stack.read(len);
+            if entry.t() <= end {
+                current = entry.child();
             }
         }
     }
 }
 
+/// The ray made ready for a tree; `None` where it meets nothing.
+#[inline(always)]
+fn prepared(bvh: &Bvh, ray: &WideRay) -> Option<TraversalRay> {
+    if bvh.nodes.is_empty() { None } else { TraversalRay::new(ray, &bvh.bounds) }
+}
+
 /// Tests the children of a node; returns the nearest and stacks the others, the farthest lowest.
 #[inline(always)]
-fn descend<L: Lanes, V: Visitor>(
+fn descend<'a, L: Lanes, V: Visitor<'a>>(
     lanes: L,
     node: &Node,
     ray: &TraversalRay,
     end: f32,
     stack: &mut L::Stack,
+    len: &mut usize,
 ) -> u32 {
     // Otherwise compilers broadcast the numbers of the ray before the loop, only to spill them.
     let ray = std::hint::black_box(ray);
@@ -113,39 +156,58 @@ fn descend<L: Lanes, V: Visitor>(
     }
     let second = Entry::of(node, &near, rest);
     if V::ANY {
-        let mut last = second;
+        let (nearer, mut last) = first.sorted(second);
         rest &= rest - 1;
-        stack.push(first);
+        push(stack, len, nearer);
         while rest != 0 {
-            stack.push(last);
-            last = Entry::of(node, &near, rest);
+            let (nearer, farther) = last.sorted(Entry::of(node, &near, rest));
+            push(stack, len, nearer);
+            last = farther;
             rest &= rest - 1;
         }
         return last.child();
     }
     let (mut first, second) = first.sorted(second);
     rest &= rest - 1;
-    let start = stack.len();
-    stack.push(second);
+    let start = *len;
+    push(stack, len, second);
     while rest != 0 {
         let entry = Entry::of(node, &near, rest);
         rest &= rest - 1;
         let (nearer, farther) = first.sorted(entry);
-        stack.insert(start, farther);
+        insert(stack, start, len, farther);
         first = nearer;
     }
     first.child()
 }
 
+#[inline(always)]
+fn push(stack: &mut impl Stack, len: &mut usize, entry: Entry) {
+    stack.write(*len, entry);
+    *len += 1;
+}
+
+/// Puts an entry among those from `start` on, which stand in falling order.
+#[inline(always)]
+fn insert(stack: &mut impl Stack, start: usize, len: &mut usize, entry: Entry) {
+    let mut slot = *len;
+    while slot > start && stack.read(slot - 1).is_before(entry) {
+        stack.write(slot, stack.read(slot - 1));
+        slot -= 1;
+    }
+    stack.write(slot, entry);
+    *len += 1;
+}
+
 /// Tests the triangles of a leaf, which may bring the end of the ray nearer; false to stop.
 #[inline(always)]
-fn visit_triangles<L: Lanes>(
+fn visit_triangles<'a, L: Lanes>(
     lanes: L,
     bvh: &Bvh,
     leaf: u32,
     ray: &TraversalRay,
     end: &mut f32,
-    visitor: &mut impl Visitor,
+    visitor: &mut impl Visitor<'a>,
 ) -> bool {
     let mut hits = Hits::NONE;
     for block in lanes.blocks(bvh, leaf) {
@@ -168,16 +230,39 @@ fn visit_triangles<L: Lanes>(
     true
 }
 
-/// Shows the items of a leaf, which may bring the end of the ray nearer; false to stop.
+/// What to do after the items of a leaf.
+enum Items {
+    Done,
+    Stop,
+    /// To enter; the items behind it are stacked.
+    Instance(u32),
+}
+
+/// Shows the items of a leaf up to the first instance; they may bring the end of the ray nearer.
 #[inline(always)]
-fn visit_items(bvh: &Bvh, leaf: u32, end: &mut f32, visitor: &mut impl Visitor) -> bool {
+fn visit_items<'a>(
+    bvh: &Bvh,
+    leaf: u32,
+    end: &mut f32,
+    stack: &mut impl Stack,
+    len: &mut usize,
+    visitor: &mut impl Visitor<'a>,
+) -> Items {
     debug_assert!(leaf >> 30 == ITEMS);
-    for item in &bvh.items[leaf_range(leaf)] {
-        match visitor.item(*item, *end) {
+    let mut range = leaf_range(leaf);
+    while let Some(index) = range.next() {
+        let item = bvh.items[index];
+        if item.geometry == INSTANCE {
+            if !range.is_empty() {
+                push(stack, len, Entry::at_once(node::leaf(ITEMS, range.start, range.len())));
+            }
+            return Items::Instance(item.primitive);
+        }
+        match visitor.shape(item, *end) {
             Verdict::Pass => {}
             Verdict::Shorten(t) => *end = t,
-            Verdict::Stop => return false,
+            Verdict::Stop => return Items::Stop,
         }
     }
-    true
+    Items::Done
 }

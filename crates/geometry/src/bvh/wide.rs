@@ -39,7 +39,7 @@ impl Avx2 {
 
     /// See [`super::Kernel::traverse`].
     #[inline(always)]
-    pub(super) fn traverse(self, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {
+    pub(super) fn traverse<'a>(self, bvh: &'a Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor<'a>) {
         // SAFETY: the instructions exist, see `Avx2`.
         unsafe { traverse_by_avx2(self, bvh, ray, t_max, visitor) }
     }
@@ -47,7 +47,7 @@ impl Avx2 {
 
 /// The generic traversal, compiled for AVX2: all that it calls is inlined here.
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-fn traverse_by_avx2(lanes: Avx2, bvh: &Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor) {
+fn traverse_by_avx2<'a>(lanes: Avx2, bvh: &'a Bvh, ray: &Ray, t_max: f32, visitor: &mut impl Visitor<'a>) {
     traverse::traverse(lanes, bvh, ray, t_max, visitor);
 }
 
@@ -150,61 +150,26 @@ impl Lanes for Avx2 {
 }
 
 /// A stack that is neither cleared nor checked.
-pub(super) struct UncheckedStack {
-    entries: [MaybeUninit<Entry>; MAX_STACK],
-    len: usize,
-}
-
-impl UncheckedStack {
-    #[inline(always)]
-    fn write(&mut self, slot: usize, entry: Entry) {
-        debug_assert!(slot < MAX_STACK);
-        // SAFETY: `Bvh::new` has checked that no descent stacks more entries than fit.
-        unsafe { self.entries.get_unchecked_mut(slot) }.write(entry);
-    }
-
-    #[inline(always)]
-    fn read(&self, slot: usize) -> Entry {
-        debug_assert!(slot < self.len);
-        // SAFETY: all entries below the length have been written.
-        unsafe { self.entries.get_unchecked(slot).assume_init() }
-    }
-}
+pub(super) struct UncheckedStack([MaybeUninit<Entry>; MAX_STACK]);
 
 impl Stack for UncheckedStack {
     #[inline(always)]
     fn new() -> Self {
-        Self { entries: [const { MaybeUninit::uninit() }; MAX_STACK], len: 0 }
+        Self([const { MaybeUninit::uninit() }; MAX_STACK])
     }
 
     #[inline(always)]
-    fn len(&self) -> usize {
-        self.len
+    fn write(&mut self, slot: usize, entry: Entry) {
+        debug_assert!(slot < MAX_STACK);
+        // SAFETY: `Bvh::new` has checked that no descent into a tree stacks more than half of them, and there are two
+        // trees at most, the world's and that of an instance.
+        unsafe { self.0.get_unchecked_mut(slot) }.write(entry);
     }
 
     #[inline(always)]
-    fn pop(&mut self) -> Option<Entry> {
-        let last = self.len.checked_sub(1)?;
-        let entry = self.read(last);
-        self.len = last;
-        Some(entry)
-    }
-
-    #[inline(always)]
-    fn push(&mut self, entry: Entry) {
-        self.write(self.len, entry);
-        self.len += 1;
-    }
-
-    #[inline(always)]
-    fn insert(&mut self, start: usize, entry: Entry) {
-        let mut slot = self.len;
-        while slot > start && self.read(slot - 1).is_before(entry) {
-            let moved = self.read(slot - 1);
-            self.write(slot, moved);
-            slot -= 1;
-        }
-        self.write(slot, entry);
-        self.len += 1;
+    fn read(&self, slot: usize) -> Entry {
+        debug_assert!(slot < MAX_STACK);
+        // SAFETY: traversal reads below the number of entries that it has written.
+        unsafe { self.0.get_unchecked(slot).assume_init() }
     }
 }

@@ -1,7 +1,7 @@
 use etendue_math::{AnimatedTransform, Point3, Ray, Rng, Transform, Vector3};
 
 use crate::test_support::{any, assert_close, ball, cube, ray, single, soup, still};
-use crate::{GeometryBuilder, NO_INSTANCE, Shape};
+use crate::{Geometry, GeometryBuilder, Hit, NO_INSTANCE, Shape};
 
 fn placements() -> Vec<Transform> {
     let translate = |x: f32, y: f32, z: f32| Transform::translate(Vector3::new(x, y, z));
@@ -13,6 +13,58 @@ fn placements() -> Vec<Transform> {
         translate(0.0, 2.0, 1.0) * scale,
         translate(0.0, -2.0, -1.0) * turn * scale,
     ]
+}
+
+/// Objects with triangles and with a sphere, twelve instances in one place, a moving one, and shapes of the world: a ray finds
+/// what it finds where each of them is alone, to the last bit, by either kernel. Of equals the first instance counts.
+#[test]
+fn instances_are_found_among_others() {
+    let elsewhere = Transform::translate(Vector3::new(1.0, 1.0, -2.0));
+    let twelve = std::iter::repeat_n(still(elsewhere), 12);
+    let moving = AnimatedTransform { end: placements()[3], ..still(placements()[0]) };
+    let places: Vec<AnimatedTransform> =
+        placements().into_iter().map(still).chain(twelve).chain([moving]).collect();
+    let shapes = [Shape::Triangles(soup(300, 0.3, 3)), Shape::sphere(0.4)];
+    let scene = |with_world: bool, with_instance: &dyn Fn(usize) -> bool| {
+        let mut builder = GeometryBuilder::new();
+        let objects = [builder.begin_object(), builder.begin_object()];
+        builder.add_to_object(objects[0], shapes[0].clone(), &Transform::IDENTITY, false);
+        builder.add_to_object(objects[1], shapes[0].clone(), &Transform::IDENTITY, false);
+        builder.add_to_object(objects[1], shapes[1].clone(), &Transform::IDENTITY, false);
+        for shape in shapes.iter().filter(|_| with_world) {
+            builder.add(shape.clone(), &still(Transform::IDENTITY), false);
+        }
+        for (index, place) in places.iter().enumerate().filter(|(index, _)| with_instance(*index)) {
+            builder.add_instance(objects[index % 2], place);
+        }
+        builder.build()
+    };
+    let (all, portable) = (scene(true, &|_| true), scene(true, &|_| true).traced_portably());
+    let world = scene(true, &|_| false);
+    let alone: Vec<_> = (0..places.len()).map(|own| scene(false, &|index| index == own)).collect();
+    let mut rng = Rng::new(29, 0);
+    let mut n_of_instances = vec![0; places.len()];
+    for _ in 0..6000 {
+        let ray = Ray { time: rng.next_f32(), ..ray(&mut rng, 3.0) };
+        let t_max = if rng.next_below(4) == 0 { rng.next_f32() } else { f32::INFINITY };
+        let found = all.intersect(&ray, t_max, &any);
+        let of_instance = |(index, geometry): (usize, &Geometry)| {
+            let hit = geometry.intersect(&ray, t_max, &any)?;
+            Some(Hit { instance: index as u32, ..hit })
+        };
+        let hits = alone.iter().enumerate().filter_map(of_instance).chain(world.intersect(&ray, t_max, &any));
+        let expected = hits.min_by(|a, b| a.t.total_cmp(&b.t).then(a.instance.cmp(&b.instance)));
+        assert_eq!(found, expected, "{ray:?}");
+        assert_eq!(found, portable.intersect(&ray, t_max, &any), "{ray:?}");
+        assert_eq!(found.is_some(), all.occluded(&ray, t_max, &any), "{ray:?}");
+        assert_eq!(found.is_some(), portable.occluded(&ray, t_max, &any), "{ray:?}");
+        if let Some(n) = found.and_then(|hit| n_of_instances.get_mut(hit.instance as usize)) {
+            *n += 1;
+        }
+    }
+    // Behind the first two of the twelve, which are of either object.
+    let unseen = n_of_instances.iter().filter(|n| **n == 0).count();
+    assert_eq!(unseen, 10, "{n_of_instances:?}");
 }
 
 /// SPEC GEO-10: instances are hit like copies of the geometry, and shaded alike.

@@ -108,7 +108,7 @@ impl Quadric {
     pub(crate) fn new(shape: QuadricShape, group_from_shape: DAffine3, reverse_orientation: bool) -> Self {
         let shape_from_group = group_from_shape.inverse();
         let sign = if reverse_orientation { -1.0 } else { 1.0 };
-        let normal_map = NormalMap::new(&shape_from_group);
+        let normal_map = NormalMap::new(&shape_from_group.matrix3);
         let scale = similarity(&group_from_shape);
         let mut quadric =
             Self { shape, group_from_shape, shape_from_group, normal_map, sign, scale, area: 0.0, size: 0.0 };
