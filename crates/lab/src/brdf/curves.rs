@@ -1,14 +1,10 @@
-//! Curves of a BSDF: its lobe in the plane of incidence, albedo and Fresnel reflectance against angle, and samples
-//! against their density.
+//! Curves of a BSDF: its lobe in the plane of incidence, albedo against angle, and samples against their density.
 
 use std::f64::consts::{PI, TAU};
 
 use etendue_math::{Frame, Point2, Rng, Vector3, hash64};
-use etendue_scene::bsdf::classic::{FacetFresnel, VGroove};
-use etendue_scene::bsdf::fresnel::{fresnel_conductor, fresnel_dielectric, fresnel_schlick};
 use etendue_scene::bsdf::laws::{albedo, direction};
-use etendue_scene::bsdf::{BsdfKind, Classic, Facetted, Lobes, TransportMode};
-use etendue_spectrum::Sampled;
+use etendue_scene::bsdf::{BsdfKind, Lobes, TransportMode};
 use rayon::prelude::*;
 
 use super::subject::LAMBDA_NM;
@@ -165,67 +161,6 @@ fn shares(kind: &BsdfKind, angles: &[f64], part: Lobes) -> Vec<f64> {
         (0..N).map(weight).sum::<f64>() / N as f64
     };
     angles.par_iter().map(share).collect()
-}
-
-/// What reflects at the surface, where the model has Fresnel's equations.
-enum Interface {
-    Dielectric(f32),
-    Conductor(Sampled, Sampled),
-}
-
-fn interface(kind: &BsdfKind) -> Option<Interface> {
-    match kind {
-        BsdfKind::Conductor(bsdf) => Some(Interface::Conductor(bsdf.eta, bsdf.k)),
-        BsdfKind::Classic(Classic::VGroove(VGroove { fresnel: FacetFresnel::Exact { eta, k }, .. })) => {
-            Some(Interface::Conductor(*eta, *k))
-        }
-        BsdfKind::Dielectric(bsdf) => Some(Interface::Dielectric(bsdf.eta)),
-        BsdfKind::Facetted(Facetted::Conductor(bsdf)) => Some(Interface::Conductor(bsdf.eta, bsdf.k)),
-        BsdfKind::Facetted(Facetted::Dielectric(bsdf)) => Some(Interface::Dielectric(bsdf.eta)),
-        BsdfKind::ThinDielectric(bsdf) => Some(Interface::Dielectric(bsdf.eta)),
-        BsdfKind::Layered(bsdf) => Some(Interface::Dielectric(bsdf.coat.eta)),
-        _ => None,
-    }
-}
-
-/// Fresnel reflectance against the angle of incidence, exact and by Schlick's fit in turn (SPEC EXP-22); empty for
-/// models without an interface. Of a transparent one also from the inside, where the bare fit, with the cosine of the
-/// incident light, fails.
-#[must_use]
-pub fn fresnel_curves(kind: &BsdfKind) -> Vec<Curve> {
-    match interface(kind) {
-        None => Vec::new(),
-        Some(Interface::Dielectric(eta)) => vec![
-            against_angle("exact, from outside", |cos| fresnel_dielectric(cos, eta)),
-            against_angle("Schlick, from outside", |cos| fresnel_schlick(cos, eta)),
-            against_angle("exact, from inside", |cos| fresnel_dielectric(-cos, eta)),
-            against_angle("Schlick, from inside", |cos| fresnel_schlick(-cos, eta)),
-            against_angle("Schlick's bare formula", |cos| {
-                bare_schlick(cos, ((eta - 1.0) / (eta + 1.0)).powi(2))
-            }),
-        ],
-        Some(Interface::Conductor(eta, k)) => (0..4)
-            .flat_map(|i| {
-                let exact = move |cos| fresnel_conductor(cos, eta, k)[i];
-                let name = format!("{} nm", LAMBDA_NM[i]);
-                let fit = format!("Schlick, {name}");
-                [against_angle(&name, exact), against_angle(&fit, move |cos| bare_schlick(cos, exact(1.0)))]
-            })
-            .collect(),
-    }
-}
-
-/// `F0 + (1 - F0) (1 - cos)⁵` as printed, for any cosine.
-fn bare_schlick(cos: f32, f0: f32) -> f32 {
-    f0 + (1.0 - f0) * (1.0 - cos).powi(5)
-}
-
-fn against_angle(name: &str, f: impl Fn(f32) -> f32) -> Curve {
-    let at = |i: i32| {
-        let angle = f64::from(i) * 0.5;
-        [angle, f64::from(f(angle.to_radians().cos() as f32))]
-    };
-    Curve { name: name.to_owned(), points: (0..=180).map(at).collect() }
 }
 
 /// How often samples fall into a range of angles, against what their density says.

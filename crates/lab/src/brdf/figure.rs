@@ -2,7 +2,7 @@
 
 use etendue_image::tonemap::{Operator, apply};
 
-use super::{Curve, Exploration, Histogram, Lobe, SHOWN_INCIDENCE_DEG};
+use super::{Curve, Exploration, FresnelCurves, Histogram, Lobe, SHOWN_INCIDENCE_DEG};
 use crate::plot::{Axes, Corner, Mark, Palette, Panel, Part, Polar, Series, Wires};
 
 /// Parts of the figure side by side.
@@ -14,9 +14,7 @@ pub(super) fn parts(exploration: &Exploration) -> Vec<Part> {
     let mut parts: Vec<Part> =
         exploration.lobes.iter().map(|lobe| Part::Polar(polar(lobe, scale, &exploration.lobes))).collect();
     parts.push(Part::Panel(albedo_panel(&exploration.albedo)));
-    if !exploration.fresnel.is_empty() {
-        parts.push(Part::Panel(fresnel_panel(&exploration.fresnel)));
-    }
+    parts.extend(exploration.fresnel.iter().map(|f| Part::Panel(fresnel_panel(f))));
     parts.extend(exploration.histograms.iter().map(|h| Part::Panel(histogram_panel(h))));
     if !exploration.meridians.is_empty() {
         parts.push(Part::Wires(wires(&exploration.meridians, scale)));
@@ -133,9 +131,8 @@ fn albedo_panel(curves: &[Curve]) -> Panel {
     }
 }
 
-fn fresnel_panel(curves: &[Curve]) -> Panel {
-    // A metal has a pair for each wavelength; glass one for each side, and the bare formula.
-    let is_metal = curves.len() == 8;
+fn fresnel_panel(fresnel: &FresnelCurves) -> Panel {
+    let &FresnelCurves { place, is_metal, ref curves } = fresnel;
     let series_of = |(i, curve): (usize, &Curve)| match (is_metal, i) {
         (true, 1) => Series { name: "by Schlick's fit".to_owned(), ..series(curve, Mark::DashesAsBefore) },
         (true, i) if i % 2 == 1 => Series { name: String::new(), ..series(curve, Mark::DashesAsBefore) },
@@ -144,7 +141,7 @@ fn fresnel_panel(curves: &[Curve]) -> Panel {
         _ => series(curve, Mark::DashesAsBefore),
     };
     Panel {
-        title: "Fresnel reflectance, exact and by Schlick's fit".to_owned(),
+        title: format!("Fresnel reflectance of the {place}, exact and by Schlick's fit"),
         x_label: "angle of incidence in degrees".to_owned(),
         y_label: "share reflected".to_owned(),
         y_range: Some([0.0, 1.02]),

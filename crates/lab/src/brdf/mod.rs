@@ -8,6 +8,7 @@
 
 mod curves;
 mod figure;
+mod fresnel;
 mod laws;
 mod page;
 mod subject;
@@ -22,9 +23,9 @@ use etendue_transport::lpe::PathExpressions;
 use etendue_transport::{Stop, Unobserved, method, render};
 
 pub use curves::{
-    Curve, Histogram, INCIDENCE_DEG, Lobe, SHOWN_INCIDENCE_DEG, albedo_curves, fresnel_curves, histograms,
-    lobes, meridians,
+    Curve, Histogram, INCIDENCE_DEG, Lobe, SHOWN_INCIDENCE_DEG, albedo_curves, histograms, lobes, meridians,
 };
+pub use fresnel::{FresnelCurves, fresnel_curves};
 pub use laws::{LawLine, LawRow, law_lines, law_names, law_table, law_table_text};
 pub use subject::{LAMBDA_NM, Subject, SubjectError, SubjectResult};
 
@@ -49,8 +50,8 @@ pub struct Exploration {
     pub meridians: Vec<Vec<[f64; 3]>>,
     /// Albedo against angle.
     pub albedo: Vec<Curve>,
-    /// Fresnel reflectance against angle, exact and fitted in turn; empty without an interface.
-    pub fresnel: Vec<Curve>,
+    /// Fresnel reflectance against angle, of each interface; empty without one.
+    pub fresnel: Vec<FresnelCurves>,
     /// Samples against their density; empty for Dirac lobes.
     pub histograms: Vec<Histogram>,
     /// A lit ball, in linear sRGB.

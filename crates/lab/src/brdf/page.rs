@@ -24,11 +24,13 @@ impl Exploration {
             add("lobe", &name, &lobe.points);
             add("specular", &name, &lobe.spikes);
         }
-        let curves = [("albedo", &self.albedo), ("fresnel", &self.fresnel)];
-        for (plot, Curve { name, points }) in
-            curves.iter().flat_map(|(plot, c)| c.iter().map(move |c| (plot, c)))
-        {
-            add(plot, name, points);
+        for Curve { name, points } in &self.albedo {
+            add("albedo", name, points);
+        }
+        for interface in &self.fresnel {
+            for Curve { name, points } in &interface.curves {
+                add(&format!("fresnel {}", interface.place), name, points);
+            }
         }
         for histogram in &self.histograms {
             for curve in [&histogram.samples, &histogram.pdf] {

@@ -21,6 +21,10 @@ fn at(curve: &Curve, angle: f64) -> f64 {
     point.unwrap_or_else(|| panic!("{} has no point at {angle}", curve.name))[1]
 }
 
+fn fresnel_of(model: &str, parameters: &[&str]) -> Vec<Curve> {
+    fresnel_curves(&subject(model, parameters).kind).remove(0).curves
+}
+
 /// SPEC BRDF-31: in the plane of incidence, Lambert's f cos is a circle through the point, wherever light arrives.
 #[test]
 fn the_lobe_of_lambert_is_a_circle() {
@@ -50,7 +54,7 @@ fn spikes_of_glass_obey_snell() {
 /// inside all is reflected beyond 41.8°, which the bare formula does not know; and it reflects where there is no interface.
 #[test]
 fn schlicks_fit_beside_fresnels_equations() {
-    let curves = fresnel_curves(&subject("dielectric", &["float eta 1.5"]).kind);
+    let curves = fresnel_of("dielectric", &["float eta 1.5"]);
     let [outside, fit, inside, fit_inside, bare] = &curves[..] else { panic!("five curves") };
     assert!((at(outside, 0.0) - 0.04).abs() < 1e-5 && (at(outside, 60.0) - 0.0892).abs() < 1e-4);
     assert!((at(fit, 60.0) - 0.07).abs() < 1e-3);
@@ -58,8 +62,41 @@ fn schlicks_fit_beside_fresnels_equations() {
         assert!(at(curve, 41.5) < 1.0 && at(curve, 42.0) == 1.0, "{}", curve.name);
     }
     assert!(at(bare, 42.0) < 0.05);
-    let nothing = fresnel_curves(&subject("dielectric", &["float eta 1"]).kind);
+    let nothing = fresnel_of("dielectric", &["float eta 1"]);
     assert!(at(&nothing[0], 89.0) < 1e-6 && at(&nothing[1], 89.0) == 0.0 && at(&nothing[4], 89.0) > 0.9);
+}
+
+/// SPEC EXP-22: coats show what they reflect, and the metal below; models that know a fit alone have one that starts there.
+#[test]
+fn coats_have_fresnel_curves() {
+    let bare = fresnel_of("dielectric", &["float eta 1.4"]);
+    for coat in ["smoothcoat", "coateddiffuse", "coatedconductor"] {
+        let parameters = if coat == "smoothcoat" { ["float eta 1.4"] } else { ["float interface.eta 1.4"] };
+        let parameters = if coat == "coateddiffuse" { ["float eta 1.4"] } else { parameters };
+        assert_eq!(fresnel_of(coat, &parameters), bare, "{coat}");
+    }
+    let [_, metal] = &fresnel_curves(&subject("coatedconductor", &[]).kind)[..] else {
+        panic!("two interfaces")
+    };
+    assert!(metal.is_metal && at(&metal.curves[6], 0.0) > 0.8, "copper is bright in red");
+    for (model, f0) in
+        [("schlick", "reflectance"), ("ashikhminshirley", "ks"), ("cooktorrance", "reflectance")]
+    {
+        let text = format!("float {f0} 0.3");
+        let fit: &[&str] =
+            if model == "cooktorrance" { &[&text, "string fresnel schlick"] } else { &[&text] };
+        let curves = fresnel_of(model, fit);
+        assert!(
+            (at(&curves[0], 0.0) - 0.3).abs() < 1e-3 && (at(&curves[1], 0.0) - 0.3).abs() < 1e-3,
+            "{model}"
+        );
+        assert!(at(&curves[0], 90.0) > 0.99 && at(&curves[1], 90.0) > 0.99, "{model}");
+    }
+    for bounces in ["conductor", "dielectric"] {
+        let bounces = subject(bounces, &["float roughness 0.3", "bool multiplescattering true"]);
+        assert_eq!(fresnel_curves(&bounces.kind).len(), 1);
+    }
+    assert!(fresnel_curves(&subject("diffuse", &[]).kind).is_empty());
 }
 
 /// The albedo of Lambert is its reflectance at each wavelength; reflected and transmitted shares add up.

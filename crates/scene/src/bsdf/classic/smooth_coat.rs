@@ -38,6 +38,14 @@ impl SmoothCoat {
     }
 }
 
+impl SmoothCoat {
+    /// Index of the coat relative to the outside.
+    #[must_use]
+    pub const fn eta(&self) -> f32 {
+        self.eta
+    }
+}
+
 /// `2 ∫ F cos d cos` by Gauss's rule of 8 points.
 fn mean_reflectance(eta: f32) -> f32 {
     const GAUSS_8: [(f32, f32); 4] = [

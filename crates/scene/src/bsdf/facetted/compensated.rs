@@ -37,6 +37,12 @@ impl CompensatedConductor {
         self.conductor.microfacets
     }
 
+    /// Real and imaginary part of the index.
+    #[must_use]
+    pub const fn index(&self) -> [Sampled; 2] {
+        [self.conductor.eta, self.conductor.k]
+    }
+
     /// With rougher facets where they are nearly smooth.
     #[must_use]
     pub(super) fn regularized(self) -> Self {

@@ -74,6 +74,12 @@ impl CompensatedDielectric {
         self.dielectric.microfacets
     }
 
+    /// Index below (-z) relative to that above (+z).
+    #[must_use]
+    pub const fn eta(&self) -> f32 {
+        self.dielectric.eta
+    }
+
     /// The lobes present.
     #[must_use]
     pub fn lobes(&self) -> Lobes {
