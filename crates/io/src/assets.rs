@@ -115,7 +115,9 @@ fn wanted_files(document: &Document) -> Wanted {
         add_spectra(&mut wanted, light);
     }
     for material in &document.materials {
-        add(&mut wanted, Kind::Image, &material.entity, "normalmap");
+        for name in ["normalmap", "clearcoatnormalmap"] {
+            add(&mut wanted, Kind::Image, &material.entity, name);
+        }
         if material.entity.type_name == "tabulated" {
             add(&mut wanted, Kind::Brdf, &material.entity, "filename");
         }

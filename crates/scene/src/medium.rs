@@ -28,16 +28,29 @@ impl Interface {
     }
 }
 
+/// What a medium absorbs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Absorption {
+    /// By its coefficient in 1/m.
+    Coefficient(Spectrum),
+    /// By the share of light, in [0, 1], that is left after a distance.
+    Color {
+        /// That share.
+        color: Spectrum,
+        /// The distance in metres, positive.
+        distance_m: f32,
+    },
+}
+
 /// All media of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Media {
-    /// Absorption coefficients in 1/m.
-    absorption: Vec<Spectrum>,
+    absorption: Vec<Absorption>,
 }
 
 impl Media {
-    /// Adds a medium by its absorption coefficient in 1/m. One that is there already is not added again.
-    pub fn add(&mut self, absorption: Spectrum) -> MediumId {
+    /// Adds a medium. One that is there already is not added again.
+    pub fn add(&mut self, absorption: Absorption) -> MediumId {
         let found = self.absorption.iter().position(|known| *known == absorption);
         let index = found.unwrap_or_else(|| {
             self.absorption.push(absorption);
@@ -56,9 +69,16 @@ impl Media {
         spectra: &SpectrumTables,
         lambda: &Wavelengths,
     ) -> Sampled {
-        let sigma_a = self.absorption[medium.0 as usize].sample(spectra, lambda);
-        // Nothing absorbs nothing, however far.
-        sigma_a.map(|sigma_a| if sigma_a > 0.0 { (-sigma_a * distance).exp() } else { 1.0 })
+        match self.absorption[medium.0 as usize] {
+            Absorption::Coefficient(spectrum) => {
+                let sigma_a = spectrum.sample(spectra, lambda);
+                // Nothing absorbs nothing, however far.
+                sigma_a.map(|sigma_a| if sigma_a > 0.0 { (-sigma_a * distance).exp() } else { 1.0 })
+            }
+            Absorption::Color { color, distance_m } => {
+                color.sample(spectra, lambda).clamp(0.0, 1.0).powf(distance / distance_m)
+            }
+        }
     }
 }
 
@@ -66,26 +86,36 @@ impl Media {
 mod tests {
     use super::*;
 
+    fn coefficient(sigma_a: f32) -> Absorption {
+        Absorption::Coefficient(Spectrum::Constant(sigma_a))
+    }
+
     /// FRES-11: two metres absorb the square of what one metre absorbs, each wavelength by its own law.
     #[test]
     fn absorption_is_exponential() {
         let mut media = Media::default();
-        let grey = media.add(Spectrum::Constant(0.7));
-        let clear = media.add(Spectrum::Constant(0.0));
-        assert_eq!(media.add(Spectrum::Constant(0.7)), grey);
+        let grey = media.add(coefficient(0.7));
+        let clear = media.add(coefficient(0.0));
+        assert_eq!(media.add(coefficient(0.7)), grey);
         let (spectra, lambda) = (SpectrumTables::default(), Wavelengths::sample_visible(0.3));
         let at = |medium, distance| media.transmittance(medium, distance, &spectra, &lambda)[0];
         assert!((at(grey, 1.0) - (-0.7_f32).exp()).abs() < 1e-6);
         assert!((at(grey, 2.0) - at(grey, 1.0) * at(grey, 1.0)).abs() < 1e-6);
         assert_eq!(at(grey, f32::INFINITY), 0.0);
         assert_eq!(at(clear, f32::INFINITY), 1.0);
+        // Half of the light is left after 0.2 m: the coefficient is ln 2 / 0.2.
+        let color = |c| Absorption::Color { color: Spectrum::Constant(c), distance_m: 0.2 };
+        let [half, black, white] = [0.5, 0.0, 1.0].map(|c| media.add(color(c)));
+        let at = |medium, distance| media.transmittance(medium, distance, &spectra, &lambda)[0];
+        assert!((at(half, 0.6) - 0.125).abs() < 1e-6);
+        assert_eq!([at(black, 0.0), at(black, 1.0), at(white, f32::INFINITY)], [1.0, 0.0, 1.0]);
     }
 
     /// Sides are told apart by the geometric normal.
     #[test]
     fn sides() {
         let mut media = Media::default();
-        let (water, oil) = (media.add(Spectrum::Constant(0.1)), media.add(Spectrum::Constant(0.2)));
+        let (water, oil) = (media.add(coefficient(0.1)), media.add(coefficient(0.2)));
         let interface = Interface { inside: Some(water), outside: Some(oil) };
         assert_eq!(interface.towards(-0.1), Some(water));
         assert_eq!(interface.towards(0.1), Some(oil));

@@ -16,7 +16,7 @@ use super::microfacet::Microfacets;
 use super::tabulated::{BrdfGrid, BrdfTable, Tabulated};
 use super::{
     Base, BsdfKind, Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Lobes, ThinDielectric,
-    TransportMode, classic,
+    TransportMode, classic, facetted,
 };
 
 /// A BSDF with a name.
@@ -102,6 +102,7 @@ pub fn catalogue() -> Vec<Configuration> {
         layered("milky lacquer", milky(coated(smooth, mirror))),
     ];
     rows.extend(facetted_rows());
+    rows.extend(facetted::configurations());
     rows.extend(classic::configurations());
     rows.extend(tabulated_rows());
     rows.extend(hair_rows());

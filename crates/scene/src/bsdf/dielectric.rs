@@ -197,7 +197,7 @@ impl<F: Facets> Dielectric<F> {
 
 /// Solid angle of facet normals per solid angle of refracted directions [Walter 2007 (17)].
 #[inline]
-fn facet_jacobian(wo: Vector3, wi: Vector3, wm: Vector3, eta: f32) -> f32 {
+pub(super) fn facet_jacobian(wo: Vector3, wi: Vector3, wm: Vector3, eta: f32) -> f32 {
     wi.dot(wm).abs() / sqr(wi.dot(wm) + wo.dot(wm) / eta)
 }
 

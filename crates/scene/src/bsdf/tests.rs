@@ -1,6 +1,7 @@
 //! What every BSDF must satisfy, checked for each line of one table, and what single models promise.
 
 mod classic;
+mod extended;
 mod facetted;
 mod fresnel;
 mod hair;

@@ -7,7 +7,7 @@ use super::roughness::{Roughness, RoughnessNames};
 use super::{FacetOptions, MaterialContext, Materials, Perturbation, spec};
 use crate::bsdf::facetted::CompensatedDielectric;
 use crate::bsdf::{BsdfKind, Dielectric, Facetted};
-use crate::medium::Interface;
+use crate::medium::{Absorption, Interface};
 use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
 use crate::texture::Textures;
 
@@ -56,7 +56,7 @@ impl DielectricMaterial {
                 p.diagnostics()
                     .warning(span, "light does not grow on its way: negative absorption is taken as 0");
             }
-            Some(materials.add_medium(absorption))
+            Some(materials.add_medium(Absorption::Coefficient(absorption)))
         };
         let interface = Interface { inside: medium("absorption"), outside: medium("absorption_exterior") };
         Self {

@@ -41,6 +41,18 @@ pub(super) fn albedo_opt(p: &mut Parameters<'_, '_>, name: &'static str) -> Opti
     Some(texture)
 }
 
+/// A factor that may exceed 1; negative ones are errors.
+pub(super) fn factor(p: &mut Parameters<'_, '_>, name: &'static str, default: f32) -> SpectrumTexture {
+    let texture = p.spectrum_texture(name, Spectrum::Constant(default), SpectrumRole::Unbounded);
+    let Some(spectrum) = texture.constant() else { return texture };
+    let least = wavelengths().map(|nm| spectrum.at(&p.context.spectra, nm)).fold(f32::INFINITY, f32::min);
+    if least < 0.0 {
+        let span = p.span_of(name);
+        p.diagnostics().error(span, format!("\"{name}\" is negative ({least})"));
+    }
+    texture
+}
+
 /// Warns if two reflectances of one surface sum to more than 1 in some band: single wavelengths of saturated colours
 /// may, and are scaled without a word.
 pub(super) fn sum_of_albedos(

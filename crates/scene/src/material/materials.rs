@@ -4,9 +4,12 @@ use std::collections::HashMap;
 
 use etendue_spectrum::{Spectrum, Wavelengths};
 
-use super::{DiffuseMaterial, Material, MaterialContext, NormalMap, NormalMapId, Perturbation};
+use super::{
+    DiffuseMaterial, ExtensionsId, Material, MaterialContext, NormalMap, NormalMapId, Perturbation,
+    PrincipledExtensions, PrincipledMaterial,
+};
 use crate::bsdf::Bsdf;
-use crate::medium::{Interface, Media, MediumId};
+use crate::medium::{Absorption, Interface, Media, MediumId};
 use crate::parameters::Parameters;
 use crate::texture::{SpectrumTexture, Textures};
 
@@ -22,6 +25,7 @@ pub struct Materials {
     uniform: Vec<bool>,
     normal_maps: Vec<NormalMap>,
     media: Media,
+    extensions: Vec<PrincipledExtensions>,
 }
 
 impl Materials {
@@ -67,9 +71,21 @@ impl Materials {
         NormalMapId(index as u32)
     }
 
-    /// Adds a medium by its absorption coefficient in 1/m.
-    pub fn add_medium(&mut self, absorption: Spectrum) -> MediumId {
+    /// Adds a medium by what it absorbs.
+    pub fn add_medium(&mut self, absorption: Absorption) -> MediumId {
         self.media.add(absorption)
+    }
+
+    /// Adds what glTF's extensions say of a material.
+    pub(super) fn add_extensions(&mut self, extensions: PrincipledExtensions) -> ExtensionsId {
+        self.extensions.push(extensions);
+        ExtensionsId(self.extensions.len() as u32 - 1)
+    }
+
+    /// The extensions of that id.
+    #[must_use]
+    pub fn extensions(&self, id: ExtensionsId) -> &PrincipledExtensions {
+        &self.extensions[id.0 as usize]
     }
 
     /// What transparent surfaces have on their sides.
@@ -85,6 +101,7 @@ impl Materials {
     pub fn interface(&self, id: MaterialId) -> Option<Interface> {
         match self.get(id) {
             Material::Dielectric(material) => Some(material.interface),
+            Material::Principled(material) => self.extensions(material.extensions?).interface,
             _ => None,
         }
     }
@@ -174,6 +191,10 @@ impl Materials {
     ) -> Option<Bsdf> {
         let material = self.resolve(id, textures, ctx);
         let perturbed = material.perturbation()?.apply(self, textures, ctx);
-        material.bsdf(textures, perturbed.as_ref().unwrap_or(ctx), lambda)
+        let shaded = perturbed.as_ref().unwrap_or(ctx);
+        if let Material::Principled(PrincipledMaterial { extensions: Some(id), .. }) = material {
+            return Some(self.extensions(*id).bsdf(self, textures, [ctx, shaded], lambda));
+        }
+        material.bsdf(textures, shaded, lambda)
     }
 }

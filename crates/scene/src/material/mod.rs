@@ -29,6 +29,7 @@ mod diffuse_transmission;
 mod hair;
 mod mix;
 mod principled;
+mod principled_extensions;
 mod tabulated;
 mod thin_dielectric;
 
@@ -57,6 +58,7 @@ pub use mix::MixMaterial;
 pub use normal_map::{NormalMap, NormalMapId};
 pub use perturbation::Perturbation;
 pub use principled::PrincipledMaterial;
+pub use principled_extensions::{ExtensionsId, PrincipledExtensions};
 pub use roughness::{Roughness, RoughnessScale};
 pub use tabulated::TabulatedMaterial;
 pub use thin_dielectric::ThinDielectricMaterial;
@@ -149,7 +151,7 @@ pub const MATERIALS: &[MaterialSpec] = &[
     },
     MaterialSpec {
         name: "principled",
-        doc: "The metallic-roughness material of glTF 2.0, with all bounces.",
+        doc: "The metallic-roughness material of glTF 2.0 and its extensions, with all bounces.",
         parameters: PrincipledMaterial::PARAMETERS,
     },
     classic::MATERIALS[0],

@@ -23,19 +23,31 @@ pub enum Perturbation {
 impl Perturbation {
     pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         let height = p.float_texture_opt("displacement");
-        let Some(file) = p.string_opt("normalmap") else { return height.map_or(Self::None, Self::Bump) };
+        if !p.has("normalmap") {
+            return height.map_or(Self::None, Self::Bump);
+        }
         if height.is_some() {
             let span = p.span_of("displacement");
             p.diagnostics().warning(span, "\"displacement\" is ignored: \"normalmap\" is given too");
         }
+        Self::build_normal_map(p, "normalmap", materials).unwrap_or_default()
+    }
+
+    /// The image of normals that a parameter names, if it does and there is one.
+    pub(super) fn build_normal_map(
+        p: &mut Parameters<'_, '_>,
+        name: &'static str,
+        materials: &mut Materials,
+    ) -> Option<Self> {
+        let file = p.string_opt(name)?;
         // An image that could not be read has been reported by its reader.
-        let Some(texels) = p.context.assets.images.get(&file) else { return Self::None };
+        let texels = p.context.assets.images.get(&file)?;
         let Some(map) = NormalMap::new(Arc::clone(texels)) else {
-            let span = p.span_of("normalmap");
+            let span = p.span_of(name);
             p.diagnostics().error(span, format!("the normal map \"{file}\" needs three channels"));
-            return Self::None;
+            return None;
         };
-        Self::NormalMap(materials.add_normal_map(map))
+        Some(Self::NormalMap(materials.add_normal_map(map)))
     }
 
     /// The context with the perturbed shading frame; `None` if nothing perturbs it.

@@ -1,5 +1,7 @@
 //! Materials from parameters to scattering: defaults, meanings and reports.
 
+mod principled;
+
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -164,7 +166,11 @@ fn documented_parameters_are_the_known_ones() {
                 "integer" => Value::Integers(vec![3]),
                 "float[]" => Value::Floats(vec![-1.0, -1.0, 1.0, 20.0]),
                 _ if parameter.name == "strength" => floats(0.5),
-                _ if matches!((spec.name, parameter.name), ("smoothcoat" | "hair", "eta") | (_, "ior")) => {
+                _ if matches!(
+                    (spec.name, parameter.name),
+                    ("smoothcoat" | "hair", "eta") | (_, "ior" | "iridescenceior")
+                ) =>
+                {
                     floats(1.4)
                 }
                 // In place of others that are given.

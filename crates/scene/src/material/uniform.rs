@@ -26,7 +26,8 @@ impl Material {
                 material.reflectance.constant().is_some() && material.transmittance.constant().is_some()
             }
             Self::Principled(material) => {
-                material.base_color.constant().is_some()
+                material.extensions.is_none_or(|id| materials.extensions(id).is_uniform())
+                    && material.base_color.constant().is_some()
                     && material.metallic.constant().is_some()
                     && material.roughness.constant().is_some()
             }

@@ -95,7 +95,7 @@ fn above(wo: Vector3, wi: Vector3) -> Option<(Vector3, Vector3)> {
 
 /// The image on the other side of the surface.
 #[inline]
-fn flip(w: Vector3) -> Vector3 {
+pub(in crate::bsdf) fn flip(w: Vector3) -> Vector3 {
     Vector3::new(w.x, w.y, -w.z)
 }
 
@@ -190,6 +190,6 @@ pub(in crate::bsdf) fn sample(
 /// Whether a sample counts as diffuse: by the parts of f there, with the low digits of a number whose high digits may
 /// be used already. Where f is 0 it is what was chosen.
 #[inline]
-fn names_diffuse(diffuse: f32, glossy: f32, u: f32, chosen: bool) -> bool {
+pub(in crate::bsdf) fn names_diffuse(diffuse: f32, glossy: f32, u: f32, chosen: bool) -> bool {
     if diffuse + glossy > 0.0 { (u * 4096.0).fract() * (diffuse + glossy) < diffuse } else { chosen }
 }

@@ -3,7 +3,7 @@
 //! `E(cos, alpha)` is the albedo of lossless facets towards a direction, `E_avg(alpha) = 2 ∫ E cos d cos` its mean; B
 //! is the same for facets that reflect `(1 - wo·h)⁵`, so that those of Schlick's fit reflect `F0 (E - B) + B`. The
 //! tables are even in `sqrt(cos)`, which is how E rises from grazing, and in `sqrt(alpha)`; between entries they are
-//! bilinear, and the mean is that of the interpolated function.
+//! bilinear (of the narrowest facets in alpha²), and the mean is that of the interpolated function.
 //!
 //! For a transparent interface E counts what is reflected and refracted, as flux; it depends on the relative index too. There
 //! is a table for each of some indices, even in the root of `(eta - 1)/(eta + 1)` since what is totally reflected changes
@@ -18,12 +18,14 @@ use crate::bsdf::fresnel::{reflect, refract, schlick_weight};
 use crate::bsdf::microfacet::Microfacets;
 
 /// Entries along each axis.
-const N: usize = 32;
+pub(super) const N: usize = 32;
+/// Parts into which what facets reflect is divided.
+pub(super) const N_PARTS: usize = 3;
 /// Facets per entry.
 const N_POINTS: u32 = 2048;
 
 /// A function of cosine and alpha, and its means.
-struct Table {
+pub(super) struct Table {
     /// At `alpha = (i / (N - 1))²`, `cos = (j / (N - 1))²`.
     values: [[f32; N]; N],
     /// `2 ∫ value cos d cos` at the same alphas.
@@ -34,8 +36,15 @@ struct Table {
 pub(super) struct EnergyTable {
     /// E.
     albedo: Table,
-    /// B: the same times `(1 - wo·h)⁵`.
+    /// `B - (1 - cos)⁵`, which is small for narrow facets.
     grazing: Table,
+    /// Means of `wo·h` over the [`N_PARTS`] parts of what is reflected, by rising `wo·h`.
+    cosines: [Table; N_PARTS],
+}
+
+/// Where the entries of a table are along either axis.
+pub(super) fn square(i: usize) -> f32 {
+    sqr(i as f32 / (N - 1) as f32)
 }
 
 /// The entry below a place in [0, 1], and the share of the next one.
@@ -45,8 +54,18 @@ fn place(x: f32) -> (usize, f32) {
     (i, x - i as f32)
 }
 
+/// The row below an alpha, and the share of the next one. What the narrowest facets lose grows with alpha².
+fn row(alpha: f32) -> (usize, f32) {
+    let (i, share) = place(alpha.sqrt());
+    if i > 2 {
+        return (i, share);
+    }
+    let [low, high] = [i, i + 1].map(|i| sqr(square(i)));
+    (i, (sqr(alpha) - low) / (high - low))
+}
+
 impl Table {
-    fn new(values: [[f32; N]; N]) -> Self {
+    pub(super) fn new(values: [[f32; N]; N]) -> Self {
         Self { values, means: std::array::from_fn(|i| Self::mean_of(&values[i])) }
     }
 
@@ -61,15 +80,15 @@ impl Table {
         ((0..STEPS).map(term).sum::<f64>() / STEPS as f64) as f32
     }
 
-    fn at(&self, cos: f32, alpha: f32) -> f32 {
-        let (i, along_alpha) = place(alpha.sqrt());
+    pub(super) fn at(&self, cos: f32, alpha: f32) -> f32 {
+        let (i, along_alpha) = row(alpha);
         let (j, along_cos) = place(cos.max(0.0).sqrt());
         let row = |i: usize| lerp(along_cos, self.values[i][j], self.values[i][j + 1]);
         lerp(along_alpha, row(i), row(i + 1))
     }
 
     fn mean(&self, alpha: f32) -> f32 {
-        let (i, share) = place(alpha.sqrt());
+        let (i, share) = row(alpha);
         lerp(share, self.means[i], self.means[i + 1])
     }
 }
@@ -86,14 +105,15 @@ impl EnergyTable {
     }
 
     fn compute(shape: FacetShape) -> Self {
-        let square = |i: usize| sqr(i as f32 / (N - 1) as f32);
         let (mut albedo, mut grazing) = ([[0.0; N]; N], [[0.0; N]; N]);
+        let mut cosines = [[[0.0; N]; N]; N_PARTS];
         for (i, j) in (0..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
             let (alpha, cos) = (square(i), square(j));
-            [albedo[i][j], grazing[i][j]] =
-                if i == 0 { [1.0, schlick_weight(cos)] } else { one_bounce(shape, alpha, cos) };
+            let bounce = if i == 0 { OneBounce::of_mirror(cos) } else { OneBounce::new(shape, alpha, cos) };
+            (albedo[i][j], grazing[i][j]) = (bounce.albedo, bounce.grazing);
+            cosines.iter_mut().zip(bounce.cosines).for_each(|(table, cosine)| table[i][j] = cosine);
         }
-        Self { albedo: Table::new(albedo), grazing: Table::new(grazing) }
+        Self { albedo: Table::new(albedo), grazing: Table::new(grazing), cosines: cosines.map(Table::new) }
     }
 
     /// `E(cos, alpha)`, for alpha up to 1.
@@ -108,46 +128,81 @@ impl EnergyTable {
 
     /// `B(cos, alpha)`: E with facets that reflect `(1 - wo·h)⁵`.
     pub(super) fn grazing_albedo(&self, cos: f32, alpha: f32) -> f32 {
-        self.grazing.at(cos, alpha)
+        self.grazing.at(cos, alpha) + schlick_weight(cos)
+    }
+
+    /// Cosines `wo·h` that stand for equal parts of what is reflected.
+    pub(super) fn cosines(&self, cos: f32, alpha: f32) -> [f32; N_PARTS] {
+        std::array::from_fn(|part| self.cosines[part].at(cos, alpha))
     }
 
     /// `2 ∫ B cos d cos`.
     pub(super) fn grazing_mean(&self, alpha: f32) -> f32 {
-        self.grazing.mean(alpha)
+        self.grazing.mean(alpha) + 1.0 / 21.0
     }
 }
 
-/// The albedo of lossless facets after one bounce, and with facets that reflect `(1 - wo·h)⁵`.
-fn one_bounce(shape: FacetShape, alpha: f32, cos: f32) -> [f32; 2] {
-    let facets = AnyFacets { alphas: Microfacets::new(alpha, alpha), shape, fresnel: FresnelForm::Exact };
-    mean_over_facets(facets, cos, N_POINTS, |wo, wm| {
-        let wi = reflect(wo, wm);
-        if wi.z <= 0.0 {
-            return [0.0; 2];
-        }
-        let weight = facets.g_over_g1(wo, wi);
-        [weight, weight * schlick_weight(wo.dot(wm))]
-    })
+/// What facets of some alpha reflect to a direction, at the first bounce.
+struct OneBounce {
+    /// Albedo of lossless facets.
+    albedo: f32,
+    /// That of facets that reflect `(1 - wo·h)⁵`, less `(1 - cos)⁵`.
+    grazing: f32,
+    /// Means of `wo·h` over parts.
+    cosines: [f32; N_PARTS],
 }
 
-/// The mean over even points of what visible normals `wm` give to the direction `wo` of that cosine.
-fn mean_over_facets<const K: usize>(
-    facets: AnyFacets,
-    cos: f32,
-    n_points: u32,
-    value: impl Fn(Vector3, Vector3) -> [f32; K],
-) -> [f32; K] {
+impl OneBounce {
+    const fn of_mirror(cos: f32) -> Self {
+        Self { albedo: 1.0, grazing: 0.0, cosines: [cos; N_PARTS] }
+    }
+
+    fn new(shape: FacetShape, alpha: f32, cos: f32) -> Self {
+        let facets = AnyFacets { alphas: Microfacets::new(alpha, alpha), shape, fresnel: FresnelForm::Exact };
+        let reflected: Vec<(f32, f64)> = visible_facets(facets, cos, N_POINTS)
+            .filter_map(|(wo, wm)| {
+                let wi = reflect(wo, wm);
+                (wi.z > 0.0).then(|| (wo.dot(wm), f64::from(facets.g_over_g1(wo, wi))))
+            })
+            .collect();
+        let sum: f64 = reflected.iter().map(|(_, weight)| weight).sum();
+        let grazing: f64 = reflected.iter().map(|(c, weight)| weight * f64::from(schlick_weight(*c))).sum();
+        let n = f64::from(N_POINTS);
+        Self {
+            albedo: (sum / n) as f32,
+            grazing: (grazing / n - f64::from(schlick_weight(cos.max(LEAST_COSINE)))) as f32,
+            cosines: means_of_parts(reflected, sum),
+        }
+    }
+}
+
+/// Weighted means of the numbers over parts of equal weight, from the lowest to the highest.
+fn means_of_parts(mut weighted: Vec<(f32, f64)>, sum: f64) -> [f32; N_PARTS] {
+    weighted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut means = [0.0_f64; N_PARTS];
+    let mut before = 0.0;
+    for (number, weight) in weighted {
+        let middle = (before + 0.5 * weight) / sum;
+        let part = ((middle * N_PARTS as f64) as usize).min(N_PARTS - 1);
+        means[part] += f64::from(number) * weight;
+        before += weight;
+    }
+    means.map(|mean| (mean * N_PARTS as f64 / sum) as f32)
+}
+
+/// Below this a direction counts as this.
+const LEAST_COSINE: f32 = 1e-4;
+
+/// A direction of that cosine, with even points of the normals visible from it.
+fn visible_facets(facets: AnyFacets, cos: f32, n_points: u32) -> impl Iterator<Item = (Vector3, Vector3)> {
     // Multiples of the powers of 1/g with g³ = g + 1 (Roberts 2018), as shares of 2³².
     const STEPS: [u32; 2] = [3_242_174_889, 2_447_445_414];
-    let cos = cos.max(1e-4);
+    let cos = cos.max(LEAST_COSINE);
     let wo = Vector3::new((1.0 - sqr(cos)).max(0.0).sqrt(), 0.0, cos);
-    let mut sums = [0.0_f64; K];
-    for k in 0..n_points {
+    (0..n_points).map(move |k| {
         let [x, y] = STEPS.map(|step| unit_f32(step.wrapping_mul(k).wrapping_add(1 << 31)));
-        let wm = facets.sample_visible_normal(wo, Point2::new(x, y));
-        sums.iter_mut().zip(value(wo, wm)).for_each(|(sum, value)| *sum += f64::from(value));
-    }
-    sums.map(|sum| (sum / f64::from(n_points)) as f32)
+        (wo, facets.sample_visible_normal(wo, Point2::new(x, y)))
+    })
 }
 
 /// Relative indices with a table.
@@ -208,12 +263,12 @@ fn interface_table(shape: FacetShape, fresnel: FresnelForm, i: usize) -> &'stati
 }
 
 fn interface_energy(shape: FacetShape, fresnel: FresnelForm, eta: f32) -> Table {
-    let square = |i: usize| sqr(i as f32 / (N - 1) as f32);
     let mut values = [[1.0; N]; N];
     for (i, j) in (1..N).flat_map(|i| (0..N).map(move |j| (i, j))) {
         let facets = AnyFacets { alphas: Microfacets::new(square(i), square(i)), shape, fresnel };
-        let leaves = |wo, wm| [leaving_once(facets, eta, wo, wm)];
-        values[i][j] = mean_over_facets(facets, square(j), N_INTERFACE_POINTS, leaves)[0].min(1.0);
+        let leaving = visible_facets(facets, square(j), N_INTERFACE_POINTS)
+            .map(|(wo, wm)| f64::from(leaving_once(facets, eta, wo, wm)));
+        values[i][j] = (leaving.sum::<f64>() / f64::from(N_INTERFACE_POINTS)).min(1.0) as f32;
     }
     Table::new(values)
 }

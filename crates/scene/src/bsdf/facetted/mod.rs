@@ -8,6 +8,7 @@ mod beckmann;
 mod compensated;
 mod compensated_dielectric;
 mod energy;
+mod extended;
 mod facets;
 mod principled;
 
@@ -17,9 +18,12 @@ use etendue_spectrum::Sampled;
 use super::classic::lobed;
 use super::{BsdfSample, Conductor, Dielectric, Lobes, TransportMode};
 
+pub(in crate::bsdf) use extended::configurations;
+
 pub use beckmann::Beckmann;
 pub use compensated::CompensatedConductor;
 pub use compensated_dielectric::CompensatedDielectric;
+pub use extended::{ExtendedPrincipled, PrincipledParameters, ThinFilm};
 pub use facets::{AnyFacets, FacetShape, Facets, FresnelForm};
 pub use principled::Principled;
 
@@ -36,6 +40,8 @@ pub enum Facetted {
     CompensatedDielectric(CompensatedDielectric),
     /// glTF's metal and coated base.
     Principled(Principled),
+    /// The same with extensions.
+    Extended(ExtendedPrincipled),
 }
 
 impl Facetted {
@@ -48,6 +54,7 @@ impl Facetted {
             Self::Dielectric(bsdf) => bsdf.lobes(),
             Self::CompensatedDielectric(bsdf) => bsdf.lobes(),
             Self::Principled(bsdf) => lobed::lobes(bsdf),
+            Self::Extended(bsdf) => bsdf.lobes(),
         }
     }
 
@@ -60,6 +67,7 @@ impl Facetted {
             Self::Dielectric(bsdf) => bsdf.eval(wo, wi, mode, lobes),
             Self::CompensatedDielectric(bsdf) => bsdf.eval(wo, wi, mode, lobes),
             Self::Principled(bsdf) => lobed::eval(bsdf, wo, wi, mode, lobes),
+            Self::Extended(bsdf) => bsdf.eval(wo, wi, mode, lobes),
         }
     }
 
@@ -79,6 +87,7 @@ impl Facetted {
             Self::Dielectric(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
             Self::CompensatedDielectric(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
             Self::Principled(bsdf) => lobed::sample(bsdf, wo, u_component, u, mode, lobes),
+            Self::Extended(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
         }
     }
 
@@ -91,6 +100,7 @@ impl Facetted {
             Self::Dielectric(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::CompensatedDielectric(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::Principled(bsdf) => lobed::pdf(bsdf, wo, wi, lobes),
+            Self::Extended(bsdf) => bsdf.pdf(wo, wi, lobes),
         }
     }
 
@@ -107,6 +117,7 @@ impl Facetted {
             }
             Self::CompensatedDielectric(bsdf) => Self::CompensatedDielectric(bsdf.regularized()),
             Self::Principled(bsdf) => Self::Principled(bsdf.regularized()),
+            Self::Extended(bsdf) => Self::Extended(bsdf.regularized()),
         }
     }
 
@@ -122,6 +133,7 @@ impl Facetted {
             Self::Dielectric(bsdf) => bsdf.microfacets.mean_alpha(),
             Self::CompensatedDielectric(bsdf) => bsdf.facets().mean_alpha(),
             Self::Principled(bsdf) => bsdf.mean_alpha(),
+            Self::Extended(bsdf) => bsdf.mean_alpha(),
         }
     }
 }

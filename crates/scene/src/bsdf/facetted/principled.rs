@@ -40,9 +40,13 @@ pub struct Principled {
     diffuse: Sampled,
 }
 
-/// What remains of white later bounces: `F_avg² E_avg / (1 - F_avg (1 - E_avg))` with the mean of Schlick's fit.
-fn later_bounces(f0: f32, mean: f32) -> f32 {
-    let f = (20.0 * f0 + 1.0) / 21.0;
+/// `2 ∫ F cos d cos` of Schlick's fit.
+pub(super) fn mean_of_schlick(f0: f32) -> f32 {
+    (20.0 * f0 + 1.0) / 21.0
+}
+
+/// What remains of white later bounces: `F_avg² E_avg / (1 - F_avg (1 - E_avg))` [Kulla and Conty 2017].
+pub(super) fn later_bounces(f: f32, mean: f32) -> f32 {
     sqr(f) * mean / (1.0 - f * (1.0 - mean))
 }
 
@@ -56,9 +60,10 @@ impl Principled {
         let table = EnergyTable::of(FacetShape::Ggx);
         let mean = table.mean(alpha);
         let coat_f0 = sqr((eta - 1.0) / (eta + 1.0));
-        let coat_later = later_bounces(coat_f0, mean);
+        let coat_later = later_bounces(mean_of_schlick(coat_f0), mean);
         let lost = (1.0 - mean).max(1e-6);
-        let later = base.map(|metal| (1.0 - metallic) * coat_later + metallic * later_bounces(metal, mean));
+        let later = base
+            .map(|f0| (1.0 - metallic) * coat_later + metallic * later_bounces(mean_of_schlick(f0), mean));
         let s_mean =
             coat_f0 * (mean - table.grazing_mean(alpha)) + table.grazing_mean(alpha) + coat_later * lost;
         Self {
