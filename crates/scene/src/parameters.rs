@@ -341,6 +341,19 @@ impl<'a, 'c> Parameters<'a, 'c> {
         })
     }
 
+    /// A number of things between `least` and `most`, with a default; a number beyond is reported and clamped.
+    pub fn count_within(&mut self, name: &'static str, default: u32, least: u32, most: u32) -> u32 {
+        let value = self.count(name, default);
+        let clamped = value.clamp(least, most);
+        if clamped != value {
+            let message =
+                format!("\"{name}\" must be between {least} and {most}, but is {value}; {clamped} is taken");
+            let span = self.span_of(name);
+            self.context.diagnostics.warning(span, message);
+        }
+        clamped
+    }
+
     /// A boolean with a default.
     pub fn bool(&mut self, name: &'static str, default: bool) -> bool {
         self.bool_opt(name).unwrap_or(default)

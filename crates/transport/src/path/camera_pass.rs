@@ -80,21 +80,57 @@ impl<'s> Tracer<'s> {
 pub struct CameraPass<'p> {
     /// Choice of wavelengths.
     pub wavelengths: WavelengthMode,
-    /// Layers by path expression, in the film's order.
+    /// Layers by path expression, in the film's order; only groups of one pixel can fill any.
     pub expressions: &'p PathExpressions,
+    /// Pixels across and down of a group, whose paths have wavelengths and time in common.
+    pub group_size: u32,
+}
+
+/// How a method follows the paths of a group of pixels.
+pub trait Follow: Sync {
+    /// What a path leaves for the others of its group.
+    type Left: Default;
+
+    /// Follows one path, and gives the radiance that it brings by itself.
+    fn follow(&self, tracer: &Tracer<'_>, path: &mut CameraPath<'_, '_>) -> (Sampled, Self::Left);
+
+    /// Adds what the paths of a group bring each other.
+    fn join(&self, tracer: &Tracer<'_>, group: &mut [FollowedPath<Self::Left>]);
+}
+
+/// A path that was followed, and waits for the others of its group.
+#[derive(Debug)]
+pub struct FollowedPath<L> {
+    /// Its radiance at the camera, before the camera's weight.
+    pub radiance: Sampled,
+    /// Its wavelengths.
+    pub lambda: Wavelengths,
+    /// What it leaves for the others.
+    pub left: L,
+    pixel: [u32; 2],
+    camera_weight: f32,
+    filter_weight: f32,
+    features: Option<Features>,
+}
+
+/// What the paths of a group have in common: random numbers of the first.
+#[derive(Clone, Copy, Debug)]
+struct Common {
+    u_lambda: f32,
+    u_time: f32,
 }
 
 impl CameraPass<'_> {
-    /// Adds one sample to every pixel. `radiance` follows a path from the camera and returns the radiance it brings.
-    /// `memory` is what tiles are gathered in; passes that share it spare the system the work.
-    pub fn run(
+    /// Adds one sample to every pixel. `memory` is what tiles are gathered in; passes that share it spare the system the
+    /// work.
+    pub fn run<F: Follow>(
         &self,
         scene: &Scene,
         pass: u64,
         film: &mut Film,
         control: &Control<'_>,
         memory: &mut Vec<TileSamples>,
-        radiance: impl Fn(&Tracer<'_>, &mut CameraPath<'_, '_>) -> Sampled + Sync,
+        method: &F,
     ) -> PassEnd {
         let tiles = film.tiles(TILE_SIZE);
         memory.resize_with(tiles.len(), TileSamples::default);
@@ -106,7 +142,7 @@ impl CameraPass<'_> {
                     return None;
                 }
                 let tracer = Tracer::new(scene);
-                let samples = self.run_tile(&tracer, pass, film.start_tile(bounds, memory), &radiance);
+                let samples = self.run_tile(&tracer, pass, film.start_tile(bounds, memory), method);
                 control.tile_done(bounds.n_pixels() as u64, tracer.counts());
                 Some(samples)
             })
@@ -120,40 +156,51 @@ impl CameraPass<'_> {
         if complete { PassEnd::Complete } else { PassEnd::Cancelled }
     }
 
-    fn run_tile(
+    fn run_tile<F: Follow>(
         &self,
         tracer: &Tracer<'_>,
         pass: u64,
         mut tile: FilmTile<'_>,
-        radiance: &(impl Fn(&Tracer<'_>, &mut CameraPath<'_, '_>) -> Sampled + Sync),
+        method: &F,
     ) -> TileSamples {
         let mut layers = self.expressions.recorder();
-        for pixel in tile.bounds().pixels() {
-            layers.restart();
-            self.add_sample(tracer, pass, pixel, &mut tile, &mut layers, radiance);
+        let mut group = Vec::with_capacity((self.group_size * self.group_size) as usize);
+        for bounds in tile.bounds().tiles(self.group_size) {
+            let mut common = None;
+            for pixel in bounds.pixels() {
+                let start = CameraSample::new(tracer.scene, pixel, pass, &mut common);
+                let features = tile.wants_features().then(Features::default);
+                layers.restart();
+                group.push(self.follow(tracer, start, features, &mut layers, method));
+            }
+            method.join(tracer, &mut group);
+            for path in group.drain(..) {
+                let sample = PixelSample {
+                    radiance: path.radiance * path.camera_weight,
+                    lambda: &path.lambda,
+                    filter_weight: path.filter_weight,
+                    features: path.features,
+                    layers: layers.radiance(),
+                };
+                tile.add(path.pixel, &sample);
+            }
         }
         tile.finish()
     }
 
-    fn add_sample(
+    fn follow<F: Follow>(
         &self,
         tracer: &Tracer<'_>,
-        pass: u64,
-        pixel: [u32; 2],
-        tile: &mut FilmTile<'_>,
+        start: CameraSample,
+        mut features: Option<Features>,
         layers: &mut LayerRecorder<'_>,
-        radiance: &impl Fn(&Tracer<'_>, &mut CameraPath<'_, '_>) -> Sampled,
-    ) {
-        let scene = tracer.scene;
-        let mut sampler = Sampler::new(&scene.sampler, pixel, pass);
-        let mut lambda = self.wavelengths.sample(sampler.next_1d());
-        let filter = scene.filter.sample(sampler.next_2d());
-        let p_film = Point2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5) + filter.offset;
-        let u_time = sampler.next_1d();
-        let u_lens = sampler.next_2d();
-        let mut features = tile.wants_features().then(Features::default);
-        let mut value = Sampled::ZERO;
-        if let Some(CameraRay { ray, weight }) = scene.camera.sample_ray(p_film, u_lens, u_time) {
+        method: &F,
+    ) -> FollowedPath<F::Left> {
+        let CameraSample { pixel, pass, mut sampler, common, p_film, u_lens, filter_weight } = start;
+        let mut lambda = self.wavelengths.sample(common.u_lambda);
+        let (mut radiance, mut left, mut camera_weight) = (Sampled::ZERO, F::Left::default(), 0.0);
+        if let Some(CameraRay { ray, weight }) = tracer.scene.camera.sample_ray(p_film, u_lens, common.u_time)
+        {
             let mut path = CameraPath {
                 ray,
                 pixel,
@@ -163,19 +210,43 @@ impl CameraPass<'_> {
                 layers,
                 features: features.as_mut(),
             };
-            value = radiance(tracer, &mut path) * weight;
+            (radiance, left) = method.follow(tracer, &mut path);
             layers.scale(weight);
+            camera_weight = weight;
         }
-        tile.add(
+        FollowedPath { radiance, lambda, left, pixel, camera_weight, filter_weight, features }
+    }
+}
+
+/// Where a path starts, with everything random about it.
+#[derive(Debug)]
+struct CameraSample {
+    pixel: [u32; 2],
+    pass: u64,
+    /// The numbers of the path from here on.
+    sampler: Sampler,
+    common: Common,
+    p_film: Point2,
+    u_lens: Point2,
+    filter_weight: f32,
+}
+
+impl CameraSample {
+    /// A sample of a pixel, with what its group has in common; the first of a group decides that.
+    fn new(scene: &Scene, pixel: [u32; 2], pass: u64, common: &mut Option<Common>) -> Self {
+        let mut sampler = Sampler::new(&scene.sampler, pixel, pass);
+        let u_lambda = sampler.next_1d();
+        let filter = scene.filter.sample(sampler.next_2d());
+        let own = Common { u_lambda, u_time: sampler.next_1d() };
+        Self {
             pixel,
-            &PixelSample {
-                radiance: value,
-                lambda: &lambda,
-                filter_weight: filter.weight,
-                features,
-                layers: layers.radiance(),
-            },
-        );
+            pass,
+            common: *common.get_or_insert(own),
+            p_film: Point2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5) + filter.offset,
+            u_lens: sampler.next_2d(),
+            filter_weight: filter.weight,
+            sampler,
+        }
     }
 }
 

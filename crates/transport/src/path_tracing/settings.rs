@@ -6,6 +6,9 @@ use etendue_scene::parameters::{ParameterSpec, Parameters};
 use crate::lpe::SHARP_ALPHA;
 use crate::path::camera_pass::WavelengthMode;
 
+/// Largest side of a group of pixels that share paths.
+pub(super) const MAX_REUSE: u32 = 8;
+
 /// How lights are found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightStrategy {
@@ -33,6 +36,8 @@ pub struct PathSettings {
     pub splitting: u32,
     /// Light samples at the surface where these walks part.
     pub light_samples: u32,
+    /// Pixels across and down of the groups whose paths share what they find; 1 for none.
+    pub reuse: u32,
     /// Widens narrow lobes after the first wide scattering event: less noise, biased.
     pub regularize: bool,
     /// Glossy events narrower than this count as specular in path expressions without `G` (SPEC LPE-5).
@@ -52,6 +57,7 @@ impl Default for PathSettings {
             branches: 1,
             splitting: 1,
             light_samples: 1,
+            reuse: 1,
             regularize: false,
             sharp_alpha: SHARP_ALPHA,
             lights: LightStrategy::default(),
@@ -106,6 +112,13 @@ impl PathSettings {
             doc: "samples of the lights at the surface where these walks part",
         },
         ParameterSpec {
+            name: "reuse",
+            kind: "integer",
+            default: "1",
+            unit: "pixels",
+            doc: "side of the groups of pixels whose paths share the surfaces that they find, 1 to 8; 1 for none",
+        },
+        ParameterSpec {
             name: "regularize",
             kind: "bool",
             default: "false",
@@ -151,6 +164,7 @@ impl PathSettings {
         let branches = p.count("branches", default.branches).max(1);
         let splitting = p.count("splitting", default.splitting).max(1);
         let light_samples = p.count("lightsamples", splitting).max(1);
+        let reuse = p.count_within("reuse", default.reuse, 1, MAX_REUSE);
         let regularize = p.bool("regularize", false);
         let sharp_alpha = p.float("sharpalpha", default.sharp_alpha);
         let strategies = [
@@ -174,6 +188,7 @@ impl PathSettings {
             branches,
             splitting,
             light_samples,
+            reuse,
             regularize,
             sharp_alpha,
             lights,

@@ -7,6 +7,10 @@ use crate::support::{Setup, lit, luminance, render_layers, render_passes};
 
 /// Several tiles, all kinds of events, many lights, a sampler and a wide filter.
 fn scene(sampler: &str, seed_name: &str) -> Scene {
+    scene_by("\"integer maxdepth\" 6", sampler, seed_name)
+}
+
+fn scene_by(integrator: &str, sampler: &str, seed_name: &str) -> Scene {
     let world = format!(
         "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0.7 0.5 0.2]
         Shape \"bilinearmesh\" \"point3 P\" [-3 -1 -3  3 -1 -3  -3 -1 3  3 -1 3] AttributeEnd
@@ -27,7 +31,7 @@ fn scene(sampler: &str, seed_name: &str) -> Scene {
         size: [70, 40],
         sampler,
         filter: "\"mitchell\"",
-        integrator: "\"integer maxdepth\" 6",
+        integrator,
         camera,
         world: &world,
         ..Setup::default()
@@ -52,6 +56,18 @@ fn threads_change_nothing() {
             assert_eq!(together.develop(), alone.develop());
         }
     }
+}
+
+/// The same where pixels share their paths, also for passes rendered apart.
+#[test]
+fn threads_and_splits_change_nothing_that_is_shared() {
+    let scene = scene_by("\"integer maxdepth\" 6 \"integer reuse\" 4", "\"sobol\"", "shared");
+    let alone = in_threads(1, || render_passes(&scene, 0..3));
+    let together = in_threads(3, || render_passes(&scene, 0..3));
+    assert_eq!(together.sums(), alone.sums());
+    let mut parts = in_threads(2, || render_passes(&scene, 2..3)).sums().clone();
+    parts.merge(in_threads(2, || render_passes(&scene, 0..2)).sums()).expect("different passes");
+    assert_eq!(&parts, alone.sums());
 }
 
 /// Passes 0..4 and 4..8, rendered apart and added, are passes 0..8, to the last bit; so are they in another order.

@@ -18,6 +18,7 @@ mod merging;
 mod passes;
 mod pictures;
 mod radiometry;
+mod reuse;
 mod scenes;
 mod spectra;
 mod strategies;
