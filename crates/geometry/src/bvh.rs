@@ -72,6 +72,10 @@ pub(crate) trait Visitor<'a> {
     fn note_block(&mut self);
 }
 
+/// What processors keep near at hand, roughly: a first-level cache and some of the second. Below this size announcing nodes
+/// costs more than it gains.
+const NEAR_CACHE_BYTES: usize = 128 << 10;
+
 /// The tree. Its root is node 0; no node at all means no primitive.
 #[derive(Debug, Default)]
 pub(crate) struct Bvh {
@@ -79,6 +83,8 @@ pub(crate) struct Bvh {
     blocks: Vec<TriangleBlock>,
     items: Vec<PrimitiveRef>,
     bounds: WideBounds,
+    /// True where nodes and blocks need more than the processor has near at hand.
+    exceeds_cache: bool,
 }
 
 impl Bvh {
@@ -101,7 +107,8 @@ impl Bvh {
                 }
             }
         }
-        Self { nodes, blocks, items, bounds: bounds.into() }
+        let n_bytes = size_of_val(&nodes[..]) + size_of_val(&blocks[..]);
+        Self { nodes, blocks, items, bounds: bounds.into(), exceeds_cache: n_bytes > NEAR_CACHE_BYTES }
     }
 
     /// Box around all primitives.

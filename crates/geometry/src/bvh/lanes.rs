@@ -22,6 +22,8 @@ pub(super) trait Lanes: Copy {
     fn node(self, bvh: &Bvh, node: u32) -> &Node;
     /// The triangles of a leaf of the tree.
     fn blocks(self, bvh: &Bvh, leaf: u32) -> &[TriangleBlock];
+    /// Tells the processor that a child of a node will be visited soon.
+    fn expect(self, bvh: &Bvh, child: u32);
     /// A row that a prepared ray names.
     fn row<const N: usize>(self, rows: &[[f32; 8]; N], row: usize) -> &[f32; 8];
 
@@ -67,6 +69,9 @@ impl Lanes for Portable {
     fn blocks(self, bvh: &Bvh, leaf: u32) -> &[TriangleBlock] {
         &bvh.blocks[leaf_range(leaf)]
     }
+
+    #[inline(always)]
+    fn expect(self, _: &Bvh, _: u32) {}
 
     #[inline(always)]
     fn row<const N: usize>(self, rows: &[[f32; 8]; N], row: usize) -> &[f32; 8] {

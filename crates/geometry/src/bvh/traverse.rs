@@ -1,7 +1,8 @@
 //! One ray through the tree, the same for every instruction set.
 //!
 //! Children that the ray meets are visited nearest first; those behind the nearest hit so far are dropped when their turn
-//! comes. Everything here is inlined into functions that are compiled for one instruction set each.
+//! comes. Where any hit will do, the farthest comes first: the nearest boxes of a shadow ray are mostly those of the surface
+//! that it leaves. Those that have to wait are announced to the processor, which fetches them meanwhile. Everything here is inlined into functions that are compiled for one instruction set each.
 
 use super::lanes::{Lanes, Stack};
 use super::node::{self, EMPTY, INNER, ITEMS, Node, TRIANGLES, leaf_range};
@@ -82,7 +83,7 @@ pub(super) fn traverse<'a, L: Lanes, V: Visitor<'a>>(
         current = match current >> 30 {
             INNER => {
                 visitor.note_node();
-                descend::<L, V>(lanes, lanes.node(bvh, current), ray, end, &mut stack, &mut len)
+                descend::<L, V>(lanes, bvh, current, ray, end, &mut stack, &mut len)
             }
             TRIANGLES => {
                 if !visit_triangles(lanes, bvh, current, ray, &mut end, visitor) {
@@ -119,7 +120,7 @@ pub(super) fn traverse<'a, L: Lanes, V: Visitor<'a>>(
             }
             len -= 1;
             let entry = stack.read(len);
-            if entry.t() <= end {
+            if V::ANY || entry.t() <= end {
                 current = entry.child();
             }
         }
@@ -132,11 +133,13 @@ fn prepared(bvh: &Bvh, ray: &WideRay) -> Option<TraversalRay> {
     if bvh.nodes.is_empty() { None } else { TraversalRay::new(ray, &bvh.bounds) }
 }
 
-/// Tests the children of a node; returns the nearest and stacks the others, the farthest lowest.
+/// Tests the children of a node; returns the nearest and stacks the others, the farthest lowest. For any hit it returns the
+/// farthest.
 #[inline(always)]
 fn descend<'a, L: Lanes, V: Visitor<'a>>(
     lanes: L,
-    node: &Node,
+    bvh: &Bvh,
+    node: u32,
     ray: &TraversalRay,
     end: f32,
     stack: &mut L::Stack,
@@ -144,6 +147,7 @@ fn descend<'a, L: Lanes, V: Visitor<'a>>(
 ) -> u32 {
     // Otherwise compilers broadcast the numbers of the ray before the loop, only to spill them.
     let ray = std::hint::black_box(ray);
+    let node = lanes.node(bvh, node);
     let (mask, near) = node.test(lanes, ray, lanes.splat(end * TraversalRay::WIDEN));
     if mask == 0 {
         return EMPTY;
@@ -159,9 +163,11 @@ fn descend<'a, L: Lanes, V: Visitor<'a>>(
         let (nearer, mut last) = first.sorted(second);
         rest &= rest - 1;
         push(stack, len, nearer);
+        lanes.expect(bvh, nearer.child());
         while rest != 0 {
             let (nearer, farther) = last.sorted(Entry::of(node, &near, rest));
             push(stack, len, nearer);
+            lanes.expect(bvh, nearer.child());
             last = farther;
             rest &= rest - 1;
         }
@@ -171,11 +177,13 @@ fn descend<'a, L: Lanes, V: Visitor<'a>>(
     rest &= rest - 1;
     let start = *len;
     push(stack, len, second);
+    lanes.expect(bvh, second.child());
     while rest != 0 {
         let entry = Entry::of(node, &near, rest);
         rest &= rest - 1;
         let (nearer, farther) = first.sorted(entry);
         insert(stack, start, len, farther);
+        lanes.expect(bvh, farther.child());
         first = nearer;
     }
     first.child()

@@ -10,16 +10,17 @@
 )]
 
 use super::lanes::{Lanes, Stack};
-use super::node::{Node, leaf_range};
+use super::node::{INNER, Node, TRIANGLES, leaf_range};
 use super::traverse::{Entry, MAX_STACK};
 use super::triangle_block::TriangleBlock;
 use super::{Bvh, Visitor, traverse};
 use etendue_math::Ray;
 use std::arch::x86_64::{
-    __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_andnot_ps, _mm256_cmp_ps, _mm256_div_ps, _mm256_loadu_ps,
-    _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_permute2f128_ps, _mm256_set1_ps,
-    _mm256_sub_ps,
+    __m256, _CMP_LE_OQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_ps, _mm256_andnot_ps, _mm256_cmp_ps,
+    _mm256_div_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps,
+    _mm256_permute2f128_ps, _mm256_set1_ps, _mm256_sub_ps,
 };
+use std::hint::select_unpredictable;
 use std::mem::{MaybeUninit, transmute};
 
 /// The instructions of AVX2: a value exists only where the processor has them.
@@ -139,6 +140,23 @@ impl Lanes for Avx2 {
         debug_assert!(leaf_range(leaf).end <= bvh.blocks.len());
         // SAFETY: `Bvh::new` has checked every leaf.
         unsafe { bvh.blocks.get_unchecked(leaf_range(leaf)) }
+    }
+
+    #[inline(always)]
+    fn expect(self, bvh: &Bvh, child: u32) {
+        if !bvh.exceeds_cache {
+            return;
+        }
+        let node: *const i8 = bvh.nodes.as_ptr().wrapping_add(child as usize).cast();
+        let block = bvh.blocks.as_ptr().wrapping_add(leaf_range(child).start).cast();
+        let item = bvh.items.as_ptr().wrapping_add(leaf_range(child).start).cast();
+        let leaf = select_unpredictable(child >> 30 == TRIANGLES, block, item);
+        let address = select_unpredictable(child >> 30 == INNER, node, leaf);
+        // Nodes and blocks have four lines of 64 bytes.
+        for line in 0..4 {
+            // SAFETY: a hint, which may name any address.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(address.wrapping_add(64 * line)) };
+        }
     }
 
     #[inline(always)]
