@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use etendue_image::Texels;
+use etendue_scene::bsdf::measured::MeasuredBrdf;
 use etendue_scene::bsdf::tabulated::BrdfGrid;
 use etendue_scene::document::{Entity, ShapeEntity, Value};
 use etendue_scene::{Assets, Diagnostics, Document, Span};
@@ -14,6 +15,7 @@ use rayon::prelude::*;
 use crate::brdf_table::read_brdf_table;
 use crate::file::read_file;
 use crate::images::read_texels;
+use crate::measured::read_measured;
 use crate::ply::{PlyMesh, read_ply};
 use crate::spd::read_spd;
 
@@ -27,6 +29,7 @@ enum Kind {
     Image,
     Spectrum,
     Brdf,
+    Measured,
 }
 
 /// Files by kind and name, with the first parameter that names each.
@@ -38,12 +41,13 @@ enum Loaded {
     Image(Texels),
     Spectrum(Vec<[f32; 2]>),
     Brdf(BrdfGrid),
+    Measured(MeasuredBrdf),
 }
 
 /// Reads all files that parameters of the document name; what cannot be read is an error at the parameter.
 ///
 /// Known are the meshes of `plymesh`, the images of `imagemap` textures, of lights and of normal maps, measured
-/// spectra, and the tables of `tabulated`. File names are relative to [`Document::base_directory`].
+/// spectra, the tables of `tabulated` and the measurements of `measured`. File names are relative to [`Document::base_directory`].
 #[must_use]
 pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
     let wanted: Vec<_> = wanted_files(document).into_iter().collect();
@@ -70,6 +74,9 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
             Ok(Loaded::Brdf(grid)) => {
                 assets.brdfs.insert(name, grid);
             }
+            Ok(Loaded::Measured(brdf)) => {
+                assets.measured.insert(name, Arc::new(brdf));
+            }
             Err(message) => {
                 let error = diagnostics.error(span, message);
                 if Path::new(&name).is_relative() && !document.base_directory.join(&name).exists() {
@@ -91,6 +98,9 @@ fn load_file(kind: Kind, path: &Path) -> Result<Loaded, String> {
     match kind {
         Kind::Mesh => read_ply(&bytes).map(Loaded::Mesh).map_err(|error| in_file(error.to_string())),
         Kind::Brdf => read_brdf_table(&bytes).map(Loaded::Brdf).map_err(|error| in_file(error.to_string())),
+        Kind::Measured => {
+            read_measured(&bytes).map(Loaded::Measured).map_err(|error| in_file(error.to_string()))
+        }
         _ => read_spd(&bytes).map(Loaded::Spectrum).map_err(|error| in_file(error.to_string())),
     }
 }
@@ -118,8 +128,10 @@ fn wanted_files(document: &Document) -> Wanted {
         for name in ["normalmap", "clearcoatnormalmap"] {
             add(&mut wanted, Kind::Image, &material.entity, name);
         }
-        if material.entity.type_name == "tabulated" {
-            add(&mut wanted, Kind::Brdf, &material.entity, "filename");
+        match material.entity.type_name.as_str() {
+            "tabulated" => add(&mut wanted, Kind::Brdf, &material.entity, "filename"),
+            "measured" => add(&mut wanted, Kind::Measured, &material.entity, "filename"),
+            _ => {}
         }
         add_spectra(&mut wanted, &material.entity);
     }

@@ -9,9 +9,11 @@ pub mod brdf_table;
 pub mod checkpoint;
 pub mod error;
 pub mod images;
+pub mod measured;
 pub mod pbrt;
 pub mod ply;
 pub mod spd;
+pub mod tensor;
 
 mod file;
 
@@ -20,5 +22,6 @@ pub use brdf_table::read_brdf_table;
 pub use error::FileError;
 pub use file::read_file;
 pub use images::{ImageError, read_image, read_texels, write_image};
+pub use measured::{measured_bytes, read_measured};
 pub use pbrt::{read_pbrt, read_pbrt_str, write_pbrt};
 pub use ply::read_ply;

@@ -1,4 +1,4 @@
-//! Contents of the files that a document names: meshes, images, measured spectra and tables of BRDFs.
+//! Contents of the files that a document names: meshes, images, measured spectra, tables and measurements of BRDFs.
 //!
 //! The scene is built from a [`Document`](crate::Document) and its `Assets`, so that building opens no file.
 //! Everything is keyed by the file name exactly as the parameter wrote it.
@@ -9,6 +9,7 @@ use std::sync::Arc;
 use etendue_image::Texels;
 use etendue_math::{Normal3, Point2, Point3};
 
+use crate::bsdf::measured::MeasuredBrdf;
 use crate::bsdf::tabulated::BrdfGrid;
 
 /// A mesh read from a file, in object space.
@@ -40,6 +41,8 @@ pub struct Assets {
     pub spectra: HashMap<String, Vec<[f32; 2]>>,
     /// Tables of BRDFs by file name.
     pub brdfs: HashMap<String, BrdfGrid>,
+    /// Measured BRDFs by file name.
+    pub measured: HashMap<String, Arc<MeasuredBrdf>>,
     /// Names of files that could not be read. Whoever tried has said why, so that the scene builder need not.
     pub failed: HashSet<String>,
 }

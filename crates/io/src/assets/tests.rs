@@ -3,11 +3,13 @@ use std::path::Path;
 
 use etendue_image::Image;
 use etendue_scene::Diagnostics;
+use etendue_scene::bsdf::measured::{MeasuredBrdf, MeasuredGrid};
 use etendue_scene::document::Value;
 use tempfile::TempDir;
 
 use super::load_assets;
 use crate::images::write_image;
+use crate::measured::measured_bytes;
 use crate::pbrt::read_pbrt_str;
 
 const TRIANGLE: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
@@ -26,6 +28,11 @@ fn folder() -> TempDir {
     write("bad.spd", "400\n");
     write("a.brdf", "brdf 1\n2 2 1\n1 1 1\n1 1 1\n1 1 1\n1 1 1\n");
     write("bad.brdf", "brdf 1\n2 2 1\n1 1 1\n1 -1 1\n");
+    write("bad.bsdf", "tensor_file");
+    let wavelengths = vec![500.0];
+    let grid = MeasuredGrid { n_phi: 1, n_theta: 2, n_facets: [4, 4], n_spectra: 4, wavelengths };
+    let brdf = MeasuredBrdf::of_model(&grid, |_| 1.0, |_, _, _| 0.1).expect("the model is sound");
+    fs::write(folder.path().join("a.bsdf"), measured_bytes(&brdf, "even")).expect("the file can be written");
     let image = Image::rgb(2, 1, vec![[0.5; 3]; 2]);
     write_image(folder.path().join("a.pfm"), &image).expect("the image can be written");
     folder
@@ -44,7 +51,7 @@ fn all_kinds_of_files_are_loaded() {
         Texture "u" "spectrum" "constant" "spectrum value" "./a.spd" "string filename" "ignored.png"
         LightSource "infinite" "string filename" "./a.pfm" LightSource "point" "spectrum I" "stdillum-D65"
         Material "dielectric" "string normalmap" "././a.pfm" "spectrum eta" "glass-BK7"
-        Material "tabulated" "string filename" "a.brdf"
+        Material "tabulated" "string filename" "a.brdf" Material "measured" "string filename" "a.bsdf"
         Shape "plymesh" "string filename" "a.ply" Shape "plymesh" "string filename" [ "a.ply" ]
         Shape "sphere" "string filename" "ignored.ply"
         ObjectBegin "o" Shape "plymesh" "string filename" "./a.ply" ObjectEnd"#;
@@ -63,6 +70,7 @@ fn all_kinds_of_files_are_loaded() {
     assert_eq!((assets.images["a.pfm"].width(), assets.images["a.pfm"].height()), (2, 1));
     assert_eq!(assets.spectra["a.spd"], [[400.0, 1.0], [500.0, 2.0]]);
     assert_eq!(assets.brdfs.keys().collect::<Vec<_>>(), ["a.brdf"]);
+    assert_eq!(assets.measured.keys().collect::<Vec<_>>(), ["a.bsdf"]);
 }
 
 /// Each file that fails is an error where it is named first; the others are there.
@@ -73,7 +81,9 @@ fn failures_are_located() {
         Shape \"plymesh\" \"string filename\" \"bad.ply\"\nShape \"plymesh\" \"string filename\" \"fan.ply\"\n\
         Material \"conductor\" \"spectrum k\" \"bad.spd\" \"spectrum eta\" \"none.spd\"\n\
         LightSource \"infinite\" \"string filename\" \"none.pfm\"\n\
-        Material \"tabulated\" \"string filename\" \"bad.brdf\"";
+        Material \"tabulated\" \"string filename\" \"bad.brdf\"\n\
+        Material \"measured\" \"string filename\" \"bad.bsdf\"\n\
+        Material \"measured\" \"string filename\" \"none.bsdf\"";
     let (document, _) = read_pbrt_str("test", text, folder.path());
     let (assets, diagnostics) = load_assets(&document);
     let path = |name: &str| folder.path().join(name).display().to_string();
@@ -86,6 +96,8 @@ fn failures_are_located() {
         (5, format!("`{}`: line 1 should be a wavelength and a value", path("bad.spd"))),
         (5, format!("there is no file `{}`", path("none.spd"))),
         (7, format!("`{}`: line 4 should be red, green and blue", path("bad.brdf"))),
+        (8, format!("`{}`: a tensor file begins with `tensor_file`", path("bad.bsdf"))),
+        (9, format!("there is no file `{}`", path("none.bsdf"))),
     ];
     assert_eq!(found.len(), expect.len(), "{found:#?}");
     for (problem, (line, message)) in diagnostics.list().iter().zip(expect) {

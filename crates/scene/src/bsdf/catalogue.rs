@@ -2,7 +2,7 @@
 //!
 //! Each states the laws that it breaks by its nature; tests hold it to all others, and show that those stated are broken.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use etendue_math::Vector3;
 use etendue_spectrum::{Sampled, Wavelengths};
@@ -12,6 +12,7 @@ use super::facetted::{
 };
 use super::hair::{Hair, HairRoughness};
 use super::laws::Law;
+use super::measured::{Measured, MeasuredBrdf, MeasuredGrid, MeasuredTable};
 use super::microfacet::Microfacets;
 use super::tabulated::{BrdfGrid, BrdfTable, Tabulated};
 use super::{
@@ -106,6 +107,7 @@ pub fn catalogue() -> Vec<Configuration> {
     rows.extend(classic::configurations());
     rows.extend(tabulated_rows());
     rows.extend(hair_rows());
+    rows.extend(measured_rows());
     rows
 }
 
@@ -142,6 +144,27 @@ fn facetted_rows() -> Vec<Configuration> {
         unlost("glass, all bounces, brushed", glass(0.6, 0.2, 1.5), Ggx).breaking(&[Law::Furnace]),
         unlost("smooth glass, all bounces", glass(0.0, 0.0, 1.5), Ggx),
     ]
+}
+
+/// Measurements of other models. Their interpolation does not know that light may take every way backwards.
+fn measured_rows() -> Vec<Configuration> {
+    static BRDFS: LazyLock<[Arc<MeasuredBrdf>; 2]> = LazyLock::new(|| {
+        [(copper(0.3, 0.3), 1), (copper(0.3, 0.5), 9)].map(|(metal, n)| Arc::new(measurement(metal, n)))
+    });
+    let row = |name, brdf| {
+        let model = Measured { table: MeasuredTable::of(brdf), lambda: Wavelengths::sample_visible(0.3) };
+        Configuration::new(name, "measured", BsdfKind::Measured(model)).breaking(&[Law::Reciprocity])
+    };
+    vec![row("measured copper", &BRDFS[0]), row("measured copper, brushed", &BRDFS[1])]
+}
+
+/// A measurement of metal, redder than it is.
+fn measurement(metal: Conductor, n_phi: usize) -> MeasuredBrdf {
+    let wavelengths = vec![400.0, 700.0];
+    let grid = MeasuredGrid { n_phi, n_theta: 12, n_facets: [24, 24], n_spectra: 20, wavelengths };
+    let f = |wo, wi, nm: f32| BsdfKind::Conductor(metal).radiance(wo, wi) * nm / 700.0;
+    MeasuredBrdf::of_model(&grid, |m| metal.microfacets.d(m), f)
+        .expect("the models of the catalogue are sound")
 }
 
 /// Fibres, whose offset belongs to the direction in which they are seen.

@@ -23,7 +23,9 @@ mod diffuse;
 mod diffuse_transmission;
 pub mod facetted;
 pub mod hair;
+mod kept;
 mod layered;
+pub mod measured;
 pub mod tabulated;
 mod thin_dielectric;
 
@@ -47,6 +49,7 @@ pub use facetted::Facetted;
 pub use hair::Hair;
 pub use layered::{Base, Layered};
 pub use lobes::{BsdfSample, Lobes, TransportMode};
+pub use measured::Measured;
 pub use tabulated::Tabulated;
 pub use thin_dielectric::ThinDielectric;
 
@@ -77,6 +80,8 @@ pub enum BsdfKind {
     Tabulated(Tabulated),
     /// A fibre.
     Hair(Hair),
+    /// What an instrument saw.
+    Measured(Measured),
 }
 
 impl BsdfKind {
@@ -95,6 +100,7 @@ impl BsdfKind {
             Self::Classic(bsdf) => bsdf.lobes(),
             Self::Tabulated(bsdf) => lobed::lobes(bsdf),
             Self::Hair(bsdf) => bsdf.lobes(),
+            Self::Measured(bsdf) => lobed::lobes(bsdf),
         }
     }
 
@@ -113,6 +119,7 @@ impl BsdfKind {
             Self::Classic(bsdf) => bsdf.eval(wo, wi, mode, lobes),
             Self::Tabulated(bsdf) => lobed::eval(bsdf, wo, wi, mode, lobes),
             Self::Hair(bsdf) => bsdf.eval(wo, wi, lobes),
+            Self::Measured(bsdf) => lobed::eval(bsdf, wo, wi, mode, lobes),
         }
     }
 
@@ -138,6 +145,7 @@ impl BsdfKind {
             Self::Classic(bsdf) => bsdf.sample(wo, u_component, u, mode, lobes),
             Self::Tabulated(bsdf) => lobed::sample(bsdf, wo, u_component, u, mode, lobes),
             Self::Hair(bsdf) => bsdf.sample(wo, u_component, u, lobes),
+            Self::Measured(bsdf) => lobed::sample(bsdf, wo, u_component, u, mode, lobes),
         }
     }
 
@@ -156,6 +164,7 @@ impl BsdfKind {
             Self::Classic(bsdf) => bsdf.pdf(wo, wi, lobes),
             Self::Tabulated(bsdf) => lobed::pdf(bsdf, wo, wi, lobes),
             Self::Hair(bsdf) => bsdf.pdf(wo, wi, lobes),
+            Self::Measured(bsdf) => lobed::pdf(bsdf, wo, wi, lobes),
         }
     }
 
@@ -185,7 +194,8 @@ impl BsdfKind {
             | Self::DiffuseTransmission(_)
             | Self::ThinDielectric(_)
             | Self::Tabulated(_)
-            | Self::Hair(_) => self,
+            | Self::Hair(_)
+            | Self::Measured(_) => self,
         }
     }
 
@@ -203,7 +213,8 @@ impl BsdfKind {
             | Self::Layered(_)
             | Self::Facetted(_)
             | Self::Classic(_)
-            | Self::Tabulated(_) => self.sampled_albedo(wo),
+            | Self::Tabulated(_)
+            | Self::Measured(_) => self.sampled_albedo(wo),
         }
     }
 
@@ -367,6 +378,7 @@ impl Bsdf {
             BsdfKind::Classic(bsdf) => bsdf.glossy_roughness(),
             BsdfKind::Tabulated(bsdf) if self.lobes().is_glossy() => bsdf.alpha(),
             BsdfKind::Hair(bsdf) => bsdf.alpha(),
+            BsdfKind::Measured(bsdf) => bsdf.table.alpha(),
             _ => 0.0,
         }
     }

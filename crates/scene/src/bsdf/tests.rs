@@ -6,6 +6,7 @@ mod facetted;
 mod fresnel;
 mod hair;
 mod layered;
+mod measured;
 mod microfacets;
 mod tabulated;
 

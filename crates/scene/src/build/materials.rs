@@ -10,7 +10,7 @@ use crate::parameters::Parameters;
 use super::Builder;
 
 /// Materials of pbrt-v4 for which grey diffuse stands in.
-const MISSING_MATERIALS: &[&str] = &["measured", "subsurface"];
+const MISSING_MATERIALS: &[&str] = &["subsurface"];
 
 /// The grey diffuse material, which stands in for those that are missing or wrong.
 pub(super) const DEFAULT_MATERIAL: MaterialId = MaterialId(0);

@@ -27,6 +27,7 @@ mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
 mod hair;
+mod measured;
 mod mix;
 mod principled;
 mod principled_extensions;
@@ -53,6 +54,7 @@ pub use facet_options::FacetOptions;
 pub use hair::{HairColor, HairMaterial};
 pub use index::RefractiveIndex;
 pub use materials::{MaterialId, Materials};
+pub use measured::MeasuredMaterial;
 pub use metal::Metal;
 pub use mix::MixMaterial;
 pub use normal_map::{NormalMap, NormalMapId};
@@ -95,6 +97,8 @@ pub enum Material {
     Tabulated(TabulatedMaterial),
     /// Hair and fur.
     Hair(HairMaterial),
+    /// What an instrument saw.
+    Measured(MeasuredMaterial),
     /// One of two others.
     Mix(MixMaterial),
     /// None: the surface only bounds participating media, and light passes it.
@@ -176,6 +180,11 @@ pub const MATERIALS: &[MaterialSpec] = &[
         parameters: HairMaterial::PARAMETERS,
     },
     MaterialSpec {
+        name: "measured",
+        doc: "Measured reflection, by a file of RGL's layout.",
+        parameters: MeasuredMaterial::PARAMETERS,
+    },
+    MaterialSpec {
         name: "mix",
         doc: "One of two materials at each point, in a given proportion.",
         parameters: MixMaterial::PARAMETERS,
@@ -216,6 +225,7 @@ impl Material {
             "principled" => Self::Principled(PrincipledMaterial::build(p, materials)),
             "tabulated" => Self::Tabulated(TabulatedMaterial::build(p, materials)?),
             "hair" => Self::Hair(HairMaterial::build(p, materials)),
+            "measured" => Self::Measured(MeasuredMaterial::build(p, materials)?),
             "mix" => Self::Mix(MixMaterial::build(p, named)?),
             "interface" | "none" | "" => Self::Interface,
             other => {
@@ -245,6 +255,7 @@ impl Material {
             Self::Classic(material) => BsdfKind::Classic(material.bsdf(textures, ctx, lambda)),
             Self::Tabulated(material) => material.bsdf(lambda),
             Self::Hair(material) => material.bsdf(textures, ctx, lambda),
+            Self::Measured(material) => material.bsdf(lambda),
             Self::Mix(_) | Self::Interface => return None,
         };
         Some(Bsdf::new(ctx.ns, ctx.ng, ctx.shading_dpdu, kind))
@@ -265,6 +276,7 @@ impl Material {
             Self::Classic(material) => Some(&material.perturbation),
             Self::Tabulated(material) => Some(&material.perturbation),
             Self::Hair(material) => Some(&material.perturbation),
+            Self::Measured(material) => Some(&material.perturbation),
             Self::Mix(_) | Self::Interface => None,
         }
     }

@@ -1,8 +1,11 @@
 //! A material that is what a table says.
 
+use std::collections::HashMap;
+
 use etendue_spectrum::Wavelengths;
 
 use super::{Materials, Perturbation, spec};
+use crate::assets::Assets;
 use crate::bsdf::BsdfKind;
 use crate::bsdf::tabulated::{BrdfTable, Tabulated};
 use crate::parameters::{ParameterSpec, Parameters};
@@ -32,17 +35,7 @@ impl TabulatedMaterial {
 
     pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Option<Self> {
         let span = p.span_of("filename");
-        let Some(filename) = p.string_opt("filename").filter(|name| !name.is_empty()) else {
-            p.missing("filename", "a tabulated material needs a \"filename\"");
-            return None;
-        };
-        let assets = p.context.assets;
-        let Some(grid) = assets.brdfs.get(&filename) else {
-            if !assets.failed.contains(&filename) {
-                p.diagnostics().error(span, format!("the table \"{filename}\" was not loaded"));
-            }
-            return None;
-        };
+        let (filename, grid) = file(p, "tabulated", |assets| &assets.brdfs)?;
         let table = BrdfTable::of(grid);
         if table.albedo_max() > 1.02 {
             let message =
@@ -55,4 +48,23 @@ impl TabulatedMaterial {
     pub(super) const fn bsdf(&self, lambda: &Wavelengths) -> BsdfKind {
         BsdfKind::Tabulated(Tabulated { table: self.table, lambda: *lambda })
     }
+}
+
+/// The parameter `filename` and what was read from that file; `None`, with the reason reported, if there is nothing.
+pub(super) fn file<'a, T>(
+    p: &mut Parameters<'a, '_>,
+    material: &str,
+    of: impl Fn(&Assets) -> &HashMap<String, T>,
+) -> Option<(String, &'a T)> {
+    let span = p.span_of("filename");
+    let Some(filename) = p.string_opt("filename").filter(|name| !name.is_empty()) else {
+        p.missing("filename", format!("a {material} material needs a \"filename\""));
+        return None;
+    };
+    let assets = p.context.assets;
+    let content = of(assets).get(&filename);
+    if content.is_none() && !assets.failed.contains(&filename) {
+        p.diagnostics().error(span, format!("the table \"{filename}\" was not loaded"));
+    }
+    Some((filename, content?))
 }

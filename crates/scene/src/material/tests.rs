@@ -12,6 +12,7 @@ use etendue_spectrum::{Sampled, Spectrum, Wavelengths};
 use super::*;
 use crate::assets::Assets;
 use crate::bsdf::fresnel::fresnel_conductor;
+use crate::bsdf::measured::{MeasuredBrdf, MeasuredGrid};
 use crate::bsdf::tabulated::BrdfGrid;
 use crate::bsdf::{Base, BsdfKind, Classic, Lobes, TransportMode, classic};
 use crate::diagnostics::{Diagnostics, Severity};
@@ -153,14 +154,13 @@ fn documented_parameters_are_the_known_ones() {
         let mut fixture = Fixture::default();
         fixture.name_default("a");
         let grid = BrdfGrid::tabulate([2, 2, 1], |_, _| [0.1; 3]).unwrap();
-        fixture.assets.brdfs.insert("a.brdf".to_owned(), grid);
+        fixture.assets.brdfs.insert("a".to_owned(), grid);
+        fixture.assets.measured.insert("a".to_owned(), even_measurement());
         let mut entity = plain(spec.name);
         for parameter in spec.parameters {
             let value = match parameter.kind {
                 "string" if parameter.name == "materials" => Value::Strings(vec!["a".to_owned(); 2]),
-                "string" if spec.name == "tabulated" && parameter.name == "filename" => {
-                    Value::Strings(vec!["a.brdf".to_owned()])
-                }
+                "string" if parameter.name == "filename" => Value::Strings(vec!["a".to_owned()]),
                 "string" => continue,
                 "bool" => Value::Bools(vec![true]),
                 "integer" => Value::Integers(vec![3]),
@@ -390,6 +390,30 @@ fn hair_is_colored_in_one_way() {
     assert_eq!(complaints(twice), ["\"color\" is ignored, as \"sigma_a\" is given"]);
     assert!(complaints(hair().with("beta_m", floats(0.0)))[0].contains("taken as 0.01"));
     assert!(complaints(hair().with("eta", floats(0.0)))[0].contains("taken as 1"));
+}
+
+/// Even facets that reflect half of the light of each.
+fn even_measurement() -> Arc<MeasuredBrdf> {
+    let wavelengths = vec![500.0];
+    let grid = MeasuredGrid { n_phi: 1, n_theta: 2, n_facets: [4, 4], n_spectra: 4, wavelengths };
+    Arc::new(MeasuredBrdf::of_model(&grid, |_| 1.0, |_, _, _| 0.1).expect("the model is sound"))
+}
+
+/// Measurements need a file; what a file holds is what is seen.
+#[test]
+fn measurements_need_a_file() {
+    let mut fixture = Fixture::default();
+    fixture.assets.measured.insert("a".to_owned(), even_measurement());
+    fixture.assets.failed.insert("bad".to_owned());
+    let of = |file: &str| plain("measured").with("filename", Value::Strings(vec![file.to_owned()]));
+    assert!(matches!(fixture.kind(&of("a")), BsdfKind::Measured(_)));
+    let mut complaints = |entity| {
+        let (_, diagnostics) = fixture.build(&entity);
+        diagnostics.list().iter().map(|problem| problem.message.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(complaints(of("bad")), [""; 0]);
+    assert_eq!(complaints(of("none")), ["the table \"none\" was not loaded"]);
+    assert_eq!(complaints(plain("measured")), ["a measured material needs a \"filename\""]);
 }
 
 fn kind_despite_warnings(fixture: &mut Fixture, entity: &Entity) -> BsdfKind {

@@ -37,6 +37,7 @@ impl Material {
                     && mix.materials.iter().all(|part| materials.is_uniform(*part))
             }
             Self::Hair(_) => false,
+            Self::Measured(material) => material.table.is_isotropic(),
             Self::ThinDielectric(_) | Self::Tabulated(_) | Self::Interface => true,
         }
     }

@@ -86,7 +86,7 @@ impl BrdfGrid {
 
 /// The lower of two of `n` nodes, and the share of the way to the upper, of a place from 0 to 1.
 #[inline]
-fn place(t: f32, n: usize) -> (usize, f32) {
+pub(in crate::bsdf) fn place(t: f32, n: usize) -> (usize, f32) {
     let x = t * (n - 1) as f32;
     let lower = (x as usize).min(n - 2);
     (lower, (x - lower as f32).clamp(0.0, 1.0))

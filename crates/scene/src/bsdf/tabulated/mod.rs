@@ -8,8 +8,7 @@
 //!
 //! Colours are linear sRGB; each interpolated value becomes a spectrum of its own, as a texel does.
 //!
-//! A BSDF is a small value that is copied along paths and holds no counted reference, so tables live as long as the
-//! process: [`BrdfTable::of`] keeps one for each different grid, which never changes.
+//! Tables live as long as the process: [`BrdfTable::of`] keeps one for each different grid.
 
 mod grid;
 mod table;
@@ -20,7 +19,9 @@ use etendue_spectrum::{ColorSpace, ColorSpaceName, Sampled, Wavelengths};
 use super::classic::lobed::{Lobed, Shares};
 
 pub use grid::BrdfGrid;
+pub(super) use grid::place;
 pub use table::BrdfTable;
+pub(super) use table::alpha_of_half_width;
 
 /// A table in the shading frame, at the wavelengths of a path.
 #[derive(Clone, Copy, Debug)]

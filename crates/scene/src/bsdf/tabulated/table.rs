@@ -5,11 +5,11 @@
 //! `p_h / (4 wo·h)` (Torrance and Sparrow 1967). Rings of cells are as wide as the nodes of the grid are apart.
 
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, PI, TAU};
-use std::sync::{Mutex, PoisonError};
 
 use etendue_math::{Bounds2, PiecewiseConstant2, Point2, Vector3, lerp, sqr, warp};
 
 use super::BrdfGrid;
+use crate::bsdf::kept::Kept;
 
 /// Rings of cells over theta_h.
 const N_RINGS: usize = 32;
@@ -40,14 +40,8 @@ impl BrdfTable {
     /// The table of a grid: one in a process for equal grids, never freed.
     #[must_use]
     pub fn of(grid: &BrdfGrid) -> &'static Self {
-        static TABLES: Mutex<Vec<&'static BrdfTable>> = Mutex::new(Vec::new());
-        let mut tables = TABLES.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = tables.iter().find(|known| known.grid == *grid) {
-            return known;
-        }
-        let table = Box::leak(Box::new(Self::new(grid.clone())));
-        tables.push(table);
-        table
+        static TABLES: Kept<BrdfTable> = Kept::new();
+        TABLES.find_or_keep(|known| known.grid == *grid, || Self::new(grid.clone()))
     }
 
     fn new(grid: BrdfGrid) -> Self {
@@ -60,8 +54,7 @@ impl BrdfTable {
         let mean = |rgb: [f32; 3]| rgb.iter().sum::<f32>() / 3.0;
         // The rest of a constant is rounding.
         let glossy = Some(mean(glossy)).filter(|share| *share > 1e-4 * albedo_max).unwrap_or(0.0);
-        // Facets of GGX have half their density at tan² theta = (√2 - 1) alpha².
-        let alpha = grid.half_width().map_or(1.0, |theta| (theta.tan() / 0.643_594_3).clamp(1e-3, 1.0));
+        let alpha = alpha_of_half_width(grid.half_width());
         Self { shares: [mean(even), glossy], grid, diffuse, views, albedo_max, alpha }
     }
 
@@ -118,6 +111,13 @@ impl BrdfTable {
         let pdf_h = view.pdf(Point2::new(phi, ring.min(N_RINGS as f32))) / ring_width(ring as usize);
         even * FRAC_1_PI * wi.z + (1.0 - even) * pdf_h / (4.0 * wo.dot(h))
     }
+}
+
+/// Alpha of facets whose density has fallen to half at an angle; 1 if it has not.
+///
+/// That of GGX has at tan² theta = (√2 - 1) alpha².
+pub(in crate::bsdf) fn alpha_of_half_width(theta: Option<f32>) -> f32 {
+    theta.map_or(1.0, |theta| (theta.tan() / 0.643_594_3).clamp(1e-3, 1.0))
 }
 
 /// f without its diffuse lobe.
