@@ -54,7 +54,7 @@ pub struct PrincipledExtensions {
 
 const FILM_INDICES: [f32; 2] = [1.0, 4.0];
 /// Thicker films have more colours than wavelengths of a path can show.
-const FILM_THICKNESSES_NM: [f32; 2] = [0.0, 1e5];
+const FILM_THICKNESSES_NM: [f32; 2] = [0.0, 1e4];
 const TURNS_DEG: [f32; 2] = [-360.0, 360.0];
 const POSITIVE: [f32; 2] = [0.0, f32::INFINITY];
 const DISTANCES_M: [f32; 2] = [1e-9, f32::INFINITY];

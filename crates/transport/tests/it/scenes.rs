@@ -31,7 +31,9 @@ fn scene(name: &str, size: [i32; 2], parameter: Option<(&'static str, Value)>) -
 /// SCENE-18, SCENE-40: all of them show something.
 #[test]
 fn scenes_of_the_repository_render() {
-    for name in ["balls.pbrt", "box.pbrt", "cornell.pbrt", "cylinder.pbrt", "soft-shadow.pbrt"] {
+    for name in
+        ["balls.pbrt", "box.pbrt", "cornell.pbrt", "cylinder.pbrt", "extensions.pbrt", "soft-shadow.pbrt"]
+    {
         let film = render_passes(&scene(name, [32, 24], None), 0..4);
         assert!(luminance(&film).iter().filter(|value| **value > 0.0).count() > 400, "{name} is dark");
     }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::bsdf::facetted::{ExtendedPrincipled, PrincipledParameters, ThinFilm};
 use crate::bsdf::fresnel::fresnel_dielectric;
+use crate::bsdf::laws::{fault, reciprocity_error, sample_errors};
 
 /// KHR_materials_iridescence: a film without thickness is Fresnel's surface of the index that glTF infers, one of half a
 /// wavelength of path shows it too, and one of a quarter is a coat against reflection if its index is the root of that below.
@@ -43,5 +44,46 @@ fn sheen_makes_no_light() {
             1e-3,
         );
         assert!(albedo > least && albedo < 1.001, "{sheen_roughness}: {albedo}");
+    }
+}
+
+/// Any combination of parameters at their limits scatters light soundly.
+#[test]
+fn limits_are_sound() {
+    let mut rng = Rng::new(seed("limits", 0), 0);
+    for _ in 0..30 {
+        let mut of = |values: &[f32]| values[(rng.next_f32() * values.len() as f32) as usize];
+        let share = [0.0, 0.0, 1.0, 0.5];
+        let p = PrincipledParameters {
+            base_color: Sampled::from_array([0.0, of(&share), 1.0, of(&share)]),
+            metallic: of(&share),
+            roughness: of(&[0.0, 0.04, 0.2, 1.0]),
+            ior: of(&[0.0, 1.0, 1.019, 1.02, 1.5, 4.0]),
+            specular: of(&share),
+            specular_color: Sampled::splat(of(&[0.0, 1.0, 100.0])),
+            anisotropy: of(&share),
+            transmission: of(&share),
+            is_solid: of(&share) > 0.0,
+            clearcoat: of(&share),
+            clearcoat_roughness: of(&share),
+            clearcoat_normal: Vector3::new(of(&[0.0, 0.9]), 0.0, 1.0),
+            sheen_color: Sampled::splat(of(&share)),
+            sheen_roughness: of(&share),
+            film: ThinFilm {
+                share: of(&share),
+                ior: of(&[1.0, 1.5, 4.0]),
+                thickness_nm: of(&[0.0, 300.0, 1e4]),
+            },
+            ..Default::default()
+        };
+        let kind = BsdfKind::Facetted(Facetted::Extended(ExtendedPrincipled::new(&p)));
+        for kind in [kind, kind.regularized()] {
+            assert_eq!(fault(&kind), None, "{p:?}");
+            let errors = sample_errors(&kind);
+            assert!(errors.density < 2e-2 && errors.weight < 5e-3, "{errors:?} {p:?}");
+            // Narrow facets refract light from near the critical angle at the edge of single precision.
+            let error = reciprocity_error(&kind).value;
+            assert!(error < 5e-2, "{error} {p:?}");
+        }
     }
 }

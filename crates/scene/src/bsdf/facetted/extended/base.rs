@@ -245,7 +245,8 @@ impl Base {
     /// f of the glossy lobe in 1/sr.
     pub(super) fn glossy(&self, to: Vector3, from: Vector3, below: f32) -> Sampled {
         let Some(h) = (to + from).try_normalized() else { return Sampled::ZERO };
-        self.reflectance(to.dot(h), below) * self.once(to, from, h) + self.later() * self.later_lobe(to, from)
+        self.reflectance(half_cosine(to, from), below) * self.once(to, from, h)
+            + self.later() * self.later_lobe(to, from)
     }
 
     /// f in 1/sr of what rough glass passes, to a direction below.
@@ -254,14 +255,16 @@ impl Base {
         if below == 1.0 {
             let image = Vector3::new(wi.x, wi.y, -wi.z);
             let Some(h) = (wo + image).try_normalized() else { return Sampled::ZERO };
-            let once = (Sampled::ONE - self.outside_reflectance(wo.dot(h))) * self.once(wo, image, h);
+            let once =
+                (Sampled::ONE - self.outside_reflectance(half_cosine(wo, image))) * self.once(wo, image, h);
             let later = (Sampled::ONE - self.later_outside()) * self.later_lobe(wo, image);
             return tint * (once + later);
         }
         let Some(h) = refracting_facet(wo, wi, below) else { return Sampled::ZERO };
         let passed = Sampled::ONE - self.glass_reflectance(wo.dot(h), below);
         let facets = self.facets.d(h) * self.facets.g_over_cosines(wo, wi) * wo.dot(h);
-        tint * passed * (facets * facet_jacobian(wo, wi, h, below) * radiance_scale(below, mode))
+        let refracted = facets * facet_jacobian(wo, wi, h, below) * radiance_scale(below, mode);
+        tint * passed * refracted.min(f32::MAX)
     }
 
     /// A direction of the glossy lobe: one bounce with the probability E, else evenly.
@@ -303,6 +306,11 @@ impl Base {
         let Some(h) = refracting_facet(wo, wi, below) else { return 0.0 };
         self.facets.visible_normal_pdf(wo, h) * facet_jacobian(wo, wi, h, below)
     }
+}
+
+/// Cosine between a direction and the half vector, to the last bit the same for both: films are sensitive.
+fn half_cosine(a: Vector3, b: Vector3) -> f32 {
+    (0.5 * (a + b).length()).min(1.0)
 }
 
 /// The facet that refracts `wo` above to `wi` below; `None` if only its back would.

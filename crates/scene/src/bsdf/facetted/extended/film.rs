@@ -7,7 +7,7 @@
 //! left to integrate. As in glTF the index of what is below follows from its reflectance along the normal, without
 //! absorption, also for metal. Outside is air, also under a coat.
 
-use etendue_math::{approx::sin_cos_turns, safe_sqrt, sqr};
+use etendue_math::{approx::sin_cos_turns, sqr};
 use etendue_spectrum::Sampled;
 
 /// A film on facets.
@@ -31,20 +31,23 @@ impl ThinFilm {
         let f0 = f0.to_array();
         // At the horizon itself equal indices have no limit.
         let cos = cos.clamp(1e-4, 1.0);
-        let sin2 = 1.0 - sqr(cos);
-        let cos_film = safe_sqrt(1.0 - sin2 / sqr(self.ior));
+        let cos_film = refracted(cos, self.ior);
         let upper = amplitudes([1.0, self.ior], [cos, cos_film]);
         let path = 2.0 * self.ior * self.thickness_nm * cos_film;
         Sampled::from_array(std::array::from_fn(|i| {
             // The index that reflects f0; white things have a very large one.
             let root = f0[i].max(0.0).sqrt().min(0.9999);
             let below = (1.0 + root) / (1.0 - root);
-            let cos_below = safe_sqrt(1.0 - sin2 / sqr(below));
-            let lower = amplitudes([self.ior, below], [cos_film, cos_below]);
+            let lower = amplitudes([self.ior, below], [cos_film, refracted(cos, below)]);
             let cos_phase = sin_cos_turns(path / lambda_nm[i]).1;
             0.5 * (airy(upper[0], lower[0], cos_phase) + airy(upper[1], lower[1], cos_phase))
         }))
     }
+}
+
+/// Cosine in a medium of light that comes from air.
+fn refracted(cos: f32, index: f32) -> f32 {
+    (sqr(index) - 1.0 + sqr(cos)).sqrt() / index
 }
 
 /// Amplitudes that an interface reflects of light polarised perpendicular and parallel to the plane of incidence.
@@ -56,5 +59,7 @@ fn amplitudes([n1, n2]: [f32; 2], [cos1, cos2]: [f32; 2]) -> [f32; 2] {
 /// The squared modulus of `r` of the module's text.
 fn airy(r12: f32, r23: f32, cos_phase: f32) -> f32 {
     let mixed = 2.0 * r12 * r23 * cos_phase;
-    ((sqr(r12) + sqr(r23) + mixed) / (1.0 + sqr(r12 * r23) + mixed)).clamp(0.0, 1.0)
+    let all = 1.0 + sqr(r12 * r23) + mixed;
+    // Two perfect mirrors out of phase: everything is reflected whatever is a little nearer the truth.
+    if all > 1e-12 { ((sqr(r12) + sqr(r23) + mixed) / all).clamp(0.0, 1.0) } else { 1.0 }
 }

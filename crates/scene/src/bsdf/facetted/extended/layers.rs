@@ -225,20 +225,13 @@ impl Layers {
     }
 
     fn mixture_pdf(&self, wo: Vector3, wi: Vector3, view: View, shares: &Shares) -> f32 {
-        let pdf = |(way, share): (Way, f32)| {
-            if share == 0.0 || (wi.z < 0.0) != (way == Way::Transmitted) {
-                return 0.0;
-            }
-            share
-                * match way {
-                    Way::Diffuse => FRAC_1_PI * wi.z,
-                    Way::Glossy => self.base.glossy_pdf(wo, wi),
-                    Way::Coat => self.coat.pdf(wo, wi),
-                    Way::Sheen => 0.5 * FRAC_1_PI,
-                    Way::Transmitted => self.base.transmitted_pdf(wo, wi, view.below),
-                }
-        };
-        WAYS.into_iter().zip(shares.spread).map(pdf).sum()
+        let [diffuse, glossy, coat, sheen, transmitted] = shares.spread;
+        let part = |share: f32, pdf: &dyn Fn() -> f32| if share > 0.0 { share * pdf() } else { 0.0 };
+        if wi.z < 0.0 {
+            return part(transmitted, &|| self.base.transmitted_pdf(wo, wi, view.below));
+        }
+        let even = diffuse * FRAC_1_PI * wi.z + sheen * 0.5 * FRAC_1_PI;
+        even + part(glossy, &|| self.base.glossy_pdf(wo, wi)) + part(coat, &|| self.coat.pdf(wo, wi))
     }
 
     fn sample_way(&self, way: Way, wo: Vector3, view: View, u_choice: f32, u: Point2) -> Option<Vector3> {

@@ -44,7 +44,7 @@ impl Sheen {
 
     /// What the layer lets pass at most, for whatever is below.
     pub(super) fn passed(&self, cos: f32) -> Sampled {
-        Sampled::ONE - self.color * self.albedo(cos)
+        if self.is_present() { Sampled::ONE - self.color * self.albedo(cos) } else { Sampled::ONE }
     }
 
     /// Bound of the albedo of white fibres.
