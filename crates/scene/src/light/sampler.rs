@@ -60,7 +60,7 @@ impl LightSampler {
     #[must_use]
     pub fn uses_number(&self) -> bool {
         match self {
-            Self::Tree(tree) => tree.has_lamps(),
+            Self::Tree(tree) => tree.has_choice(),
             Self::Uniform(_) | Self::Power(_) => true,
         }
     }

@@ -19,6 +19,9 @@ const N_BUCKETS: usize = 12;
 const MAX_COSTED_DEPTH: u32 = 12;
 /// No child that matters is taken less often than this.
 const MIN_PROBABILITY: f32 = 1e-6;
+/// So few lights are all asked, rather than one of them chosen: what a surface makes of the samples tells more than where
+/// lights are.
+const MOST_OF_FEW: usize = 4;
 /// Bits of a trail per turn.
 const BITS_PER_TURN: u32 = N_CHILDREN.ilog2();
 
@@ -66,8 +69,8 @@ enum Place {
 pub struct LightTree {
     /// The root first; none if no light has a place.
     nodes: Vec<Node>,
-    /// The only light that has a place: there is nothing to choose.
-    only: Option<LightId>,
+    /// The lights that have a place, if they are so few that each is asked: then there is nothing to choose.
+    few: Vec<LightId>,
     infinite: Vec<LightId>,
     places: Vec<Place>,
 }
@@ -92,25 +95,26 @@ impl LightTree {
                 None => {}
             }
         }
-        let only = if let [(id, _)] = finite.as_slice() { Some(*id) } else { None };
+        let is_few = finite.len() <= MOST_OF_FEW;
+        let few = if is_few { finite.iter().map(|(id, _)| *id).collect() } else { Vec::new() };
         let mut builder = Builder { nodes: Vec::with_capacity(finite.len().div_ceil(2)), places };
         if !finite.is_empty() {
             builder.build(&mut finite, 0, 0);
         }
-        Self { nodes: builder.nodes, only, infinite, places: builder.places }
+        Self { nodes: builder.nodes, few, infinite, places: builder.places }
     }
 
-    /// Groups of lights that are sampled apart: the tree, and each light at infinity.
+    /// Groups of lights that are sampled apart: the tree, or each of its lights if they are few, and each light at infinity.
     #[inline]
     #[must_use]
     pub fn n_groups(&self) -> usize {
-        self.infinite.len() + usize::from(self.has_lamps())
+        self.infinite.len() + if self.has_choice() { 1 } else { self.few.len() }
     }
 
-    /// True if any light has a place.
+    /// True if there are lights to choose between.
     #[inline]
-    pub(super) fn has_lamps(&self) -> bool {
-        !self.nodes.is_empty()
+    pub(super) fn has_choice(&self) -> bool {
+        self.few.is_empty() && !self.nodes.is_empty()
     }
 
     /// A light of a group for the point `reference`, with its probability within the group.
@@ -120,7 +124,10 @@ impl LightTree {
         if let Some(id) = self.infinite.get(group) {
             return Some((*id, 1.0));
         }
-        self.only.map_or_else(|| self.descend(reference, u), |id| Some((id, 1.0)))
+        match self.few.get(group - self.infinite.len()) {
+            Some(id) => Some((*id, 1.0)),
+            None => self.descend(reference, u),
+        }
     }
 
     fn descend(&self, reference: &Reference, mut u: f32) -> Option<(LightId, f32)> {
@@ -149,7 +156,7 @@ impl LightTree {
         match self.places[light.0 as usize] {
             Place::Dark => 0.0,
             Place::Infinite => 1.0,
-            Place::Trail(_) if self.only.is_some() => 1.0,
+            Place::Trail(_) if !self.few.is_empty() => 1.0,
             Place::Trail(trail) => self.pmf_along(trail, reference),
         }
     }
