@@ -167,10 +167,13 @@ fn references_on_the_edge_of_a_spot_see_it() {
     for cone in [0.5_f32, 10.0, 45.0, 89.0, 120.0, 179.0] {
         let entity =
             Entity::new("spot").with("coneangle", floats(&[cone])).with("conedeltaangle", floats(&[0.0]));
-        let entities = [placed(entity, tilted()), placed(Entity::new("point"), Transform::IDENTITY)];
+        // With others, so many that one is chosen.
+        let mut entities = vec![placed(entity, tilted())];
+        entities.extend((0..4).map(|_| placed(Entity::new("point"), Transform::IDENTITY)));
         let world = World::new(&entities, Vec::new(), &Assets::default());
         let (context, lambda) = (world.context(), some_wavelengths());
         let sampler = LightSampler::new(LightSamplerKind::Tree, &world.lights, &context);
+        assert_eq!(sampler.n_groups(), 1);
         let mut rng = rng("edge");
         for _ in 0..500 {
             let theta = cone.to_radians() * (1.0 + 1e-4 * (rng.next_f32() - 0.5));
@@ -185,13 +188,35 @@ fn references_on_the_edge_of_a_spot_see_it() {
 
 #[test]
 fn the_tree_prefers_near_lights() {
-    // Of two equal lamps 1 m and 10 m away, the near one gives a hundred times the light and most of the samples.
-    let entities = [(1.0, 0.0), (-10.0, 0.0)]
-        .map(|(x, y)| placed(Entity::new("point").with("from", point(x, y, 0.0)), Transform::IDENTITY));
+    // Of five equal lamps, one 1 m and four 10 m away, the near one gives 25 times the light of the others and most of the
+    // samples.
+    let entities = [1.0, -10.0, -10.0, -10.0, -10.0]
+        .map(|x| placed(Entity::new("point").with("from", point(x, 0.0, 0.0)), Transform::IDENTITY));
     let world = World::new(&entities, Vec::new(), &Assets::default());
     let sampler = LightSampler::new(LightSamplerKind::Tree, &world.lights, &world.context());
     let pmf = sampler.pmf(&at(Point3::ORIGIN), LightId(0));
-    assert_close(f64::from(pmf), 100.0 / 101.0, 1e-3);
+    assert_close(f64::from(pmf), 100.0 / 104.0, 1e-3);
+}
+
+#[test]
+fn few_lamps_are_all_asked() {
+    // Up to four lamps and a sky are groups of their own, taken surely, wherever they are.
+    let lamps = [1.0, -10.0, 3.0, 7.0]
+        .map(|x| placed(Entity::new("point").with("from", point(x, 0.0, 0.0)), Transform::IDENTITY));
+    let mut entities = lamps.to_vec();
+    entities.push(placed(Entity::new("infinite"), Transform::IDENTITY));
+    let world = World::new(&entities, Vec::new(), &Assets::default());
+    let sampler = LightSampler::new(LightSamplerKind::Tree, &world.lights, &world.context());
+    let reference = at(Point3::ORIGIN);
+    let mut found: Vec<u32> = (0..sampler.n_groups())
+        .map(|group| {
+            let (id, pmf) = sampler.sample(group, &reference, 0.5).expect("a light");
+            assert_eq!((pmf, sampler.pmf(&reference, id)), (1.0, 1.0));
+            id.0
+        })
+        .collect();
+    found.sort_unstable();
+    assert_eq!(found, [0, 1, 2, 3, 4]);
 }
 
 #[test]
