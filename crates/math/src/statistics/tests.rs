@@ -174,6 +174,36 @@ fn sphere_test_accepts_lobes_of_every_width() {
     }
 }
 
+/// A Gaussian lobe beside a pole: its foot fills corners of cells whose middles it does not reach.
+#[test]
+fn sphere_test_accepts_the_foot_of_a_gaussian() {
+    for (seed, width) in [(11, 0.04), (12, 0.02), (13, 0.005)] {
+        let axis = Vector3::new(0.06, 0.06, 0.99639).normalized();
+        let frame = crate::Frame::from_z(axis);
+        // Slopes with the density exp(-tan² / width²) / (pi width²).
+        let lobe = |factor: f32| {
+            sphere_chi_square(
+                100_000,
+                seed,
+                |rng| {
+                    let tan = width * (-(1.0 - rng.next_f32()).ln()).sqrt();
+                    let (sin, cos) = (std::f32::consts::TAU * rng.next_f32()).sin_cos();
+                    Some(frame.to_world(Vector3::new(tan * cos, tan * sin, 1.0)).normalized())
+                },
+                |w| {
+                    let v = frame.to_local(w);
+                    let slope2 = (v.x * v.x + v.y * v.y) / (v.z * v.z) / (width * width);
+                    let density = (-slope2).exp() / (std::f32::consts::PI * width * width * v.z.powi(3));
+                    if v.z > 0.0 { factor * density } else { 0.0 }
+                },
+                1e-4,
+            )
+        };
+        lobe(1.0).unwrap_or_else(|error| panic!("width {width}: {error}"));
+        assert!(lobe(0.95).is_err() && lobe(1.05).is_err());
+    }
+}
+
 /// Mutation: a density that is 5 % off, in scale or in shape, is found out.
 #[test]
 fn sphere_test_rejects_densities_5_percent_off() {

@@ -120,6 +120,12 @@ impl VGroove {
     }
 }
 
+/// The half vector, and its cosine with both directions, which is positive and the same if they are exchanged.
+#[inline]
+fn facet(to: Vector3, from: Vector3) -> Option<(Vector3, f32)> {
+    Some((half_vector(to, from)?, 0.5 * (to + from).length()))
+}
+
 /// The angle between a unit vector of the upper hemisphere and the normal.
 #[inline]
 fn angle(h: Vector3) -> f32 {
@@ -160,8 +166,7 @@ impl Lobed for VGroove {
     }
 
     fn glossy(&self, to: Vector3, from: Vector3) -> Sampled {
-        let Some(h) = half_vector(to, from) else { return Sampled::ZERO };
-        let cos = to.dot(h);
+        let Some((h, cos)) = facet(to, from) else { return Sampled::ZERO };
         // G / (cos_o cos_i), which stays finite: the smaller cosine masks.
         let g = (2.0 * h.z / cos / to.z.max(from.z)).min(1.0 / (to.z * from.z));
         self.fresnel.at(cos) * (0.25 * self.strength * self.d(h) * g) // [SPEC BRDF-16]
@@ -178,8 +183,8 @@ impl Lobed for VGroove {
     }
 
     fn glossy_pdf(&self, wo: Vector3, wi: Vector3) -> f32 {
-        let Some(h) = half_vector(wo, wi) else { return 0.0 };
-        self.half_pdf(h) / (4.0 * wo.dot(h))
+        let Some((h, cos)) = facet(wo, wi) else { return 0.0 };
+        self.half_pdf(h) / (4.0 * cos)
     }
 
     fn alpha(&self) -> f32 {
