@@ -228,6 +228,9 @@ pub(crate) struct TonemapArguments {
     /// Hide the steps of 8-bit outputs in noise
     #[arg(long)]
     pub(crate) dither: bool,
+    /// Write inks: channels C, M, Y and K of an .exr, of the encoded colour, without a profile
+    #[arg(long, conflicts_with = "dither")]
+    pub(crate) cmyk: bool,
 }
 
 /// A tone curve.

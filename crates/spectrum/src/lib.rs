@@ -25,6 +25,7 @@ mod tables;
 
 pub mod blackbody;
 pub mod cie;
+pub mod cmyk;
 mod color_space;
 mod daylight;
 mod matrix;
@@ -35,6 +36,7 @@ mod xyz;
 
 pub mod photometry;
 pub mod radiometry;
+pub mod scattering;
 mod sensor;
 
 #[cfg(test)]

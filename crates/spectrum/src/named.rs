@@ -1,10 +1,11 @@
-//! Spectra with names: standard illuminants, and refractive indices of glasses and metals.
+//! Spectra with names: standard illuminants, refractive indices of glasses and metals, scattering by molecules.
 //!
 //! Sources are in `data/README.md`. Illuminants are scaled so that their Y is 1 (see [`crate::spectrum_to_xyz`]). All are
 //! continued with their end values where the data end inside 360–830 nm.
 
 use crate::cie::{CIE_Y_INTEGRAL, integrate_1nm, parse_columns};
-use crate::tables::piecewise_linear;
+use crate::scattering::rayleigh;
+use crate::tables::{dense_nm, piecewise_linear};
 use crate::{LAMBDA_MAX_NM, LAMBDA_MIN_NM, N_DENSE};
 
 /// A measured or defined spectrum.
@@ -126,12 +127,17 @@ pub const CAMERA_SENSORS: [&str; 17] = [
     "sony_ilce_9",
 ];
 
-/// The spectrum of that name, such as `glass-BK7`, `metal-Au-eta`, `metal-Au-k` or `stdillum-D65`.
+/// Coefficients of scattering by molecules, relative to that at 550 nm.
+const RAYLEIGH: &str = "rayleigh";
+
+/// The spectrum of that name, such as `glass-BK7`, `metal-Au-eta`, `metal-Au-k`, `stdillum-D65` or `rayleigh`.
 #[must_use]
 pub fn named_spectrum(name: &str) -> Option<NamedSpectrum> {
     let name = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, known)| known);
     let samples = if let Some((_, formula)) = FORMULAS.iter().find(|(known, _)| *known == name) {
         formula_samples(*formula)
+    } else if name == RAYLEIGH {
+        dense_samples(rayleigh)
     } else if ZERO.contains(&name) {
         vec![[LAMBDA_MIN_NM, 0.0], [LAMBDA_MAX_NM, 0.0]]
     } else if name.starts_with("metal-") {
@@ -148,6 +154,7 @@ pub fn named_spectrum_names() -> Vec<String> {
     let mut names: Vec<String> = FORMULAS.iter().map(|(name, _)| (*name).to_owned()).collect();
     names.extend(ALIASES.map(|(alias, _)| alias.to_owned()));
     names.extend(ZERO.map(str::to_owned));
+    names.push(RAYLEIGH.to_owned());
     for line in METALS.lines().skip(1) {
         let metal = line.split(',').next().unwrap_or_default();
         let eta = format!("metal-{metal}-eta");
@@ -209,12 +216,12 @@ fn metal_samples(name: &str) -> Option<Vec<[f32; 2]>> {
 
 /// The formula at every nm.
 fn formula_samples(formula: Dispersion) -> Vec<[f32; 2]> {
-    (0..N_DENSE)
-        .map(|i| {
-            let nm = LAMBDA_MIN_NM + i as f32;
-            [nm, formula.index(f64::from(nm) * 1e-3) as f32]
-        })
-        .collect()
+    dense_samples(|nm| formula.index(f64::from(nm) * 1e-3) as f32)
+}
+
+/// A function of the wavelength in nm, at every nm.
+fn dense_samples(f: impl Fn(f32) -> f32) -> Vec<[f32; 2]> {
+    (0..N_DENSE).map(dense_nm).map(|nm| [nm, f(nm)]).collect()
 }
 
 /// Continues the ends with constants over the rendered range.

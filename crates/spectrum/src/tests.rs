@@ -3,6 +3,7 @@
 mod bands;
 mod color;
 mod emission;
+mod media;
 mod named;
 mod quantities;
 mod sensor;

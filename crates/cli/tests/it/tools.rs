@@ -106,6 +106,24 @@ fn tonemapping() {
     folder.run("tonemap a.exr -o key.png --operator reinhard --key 0.3 --white 2").expect(0);
 }
 
+/// SPEC SPD-3: inks leave the colour of the picture.
+#[test]
+fn inks_of_a_picture() {
+    let folder = Folder::with_scene(ROOM);
+    folder.render("a", "--spp 4");
+    folder.run("tonemap a.exr -o inks.exr --cmyk").expect(0);
+    folder.run("tonemap a.exr -o plain.exr").expect(0);
+    folder.run("tonemap a.exr -o inks.png --cmyk").expect(2).says("inks are written as .exr");
+    let inks = folder.image("inks.exr");
+    let [c, m, y, k] = ["C", "M", "Y", "K"].map(|name| &inks.channel(name).expect("an ink").values);
+    for (i, rgb) in folder.image("plain.exr").rgb_pixels().expect("colour").iter().enumerate() {
+        for (ink, linear) in [c[i], m[i], y[i]].into_iter().zip(*rgb) {
+            let left = (1.0 - ink) * (1.0 - k[i]);
+            assert!((left - etendue::image::srgb_encode(linear.min(1.0))).abs() < 2e-3);
+        }
+    }
+}
+
 /// What cannot be shown.
 #[test]
 fn refused_tonemapping() {
