@@ -14,7 +14,7 @@ use super::hair::{Hair, HairRoughness};
 use super::laws::Law;
 use super::measured::{Measured, MeasuredBrdf, MeasuredGrid, MeasuredTable};
 use super::microfacet::Microfacets;
-use super::tabulated::{BrdfGrid, BrdfTable, Tabulated};
+use super::tabulated::{BrdfGrid, BrdfTable, TableSampling, Tabulated};
 use super::{
     Base, BsdfKind, Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Lobes, ThinDielectric,
     TransportMode, classic, facetted,
@@ -218,6 +218,7 @@ fn tabulated_rows() -> Vec<Configuration> {
         tabulated("table of Lewis's Phong", highlight),
         tabulated("table of copper", metal),
         tabulated("table of a reflector", reflector),
+        rejected("table of a reflector, by rejection", reflector),
     ]
 }
 
@@ -234,8 +235,15 @@ fn table_of(resolution: [usize; 3], color: [f32; 3], f: impl Fn(Vector3, Vector3
 }
 
 fn tabulated(name: &'static str, grid: &BrdfGrid) -> Configuration {
-    let model = Tabulated { table: BrdfTable::of(grid), lambda: Wavelengths::sample_visible(0.3) };
+    let lambda = Wavelengths::sample_visible(0.3);
+    let model = Tabulated { table: BrdfTable::of(grid), lambda, sampling: TableSampling::Cells };
     Configuration::new(name, "tabulated", BsdfKind::Tabulated(model))
+}
+
+fn rejected(name: &'static str, grid: &BrdfGrid) -> Configuration {
+    let lambda = Wavelengths::sample_visible(0.3);
+    let model = Tabulated { table: BrdfTable::of(grid), lambda, sampling: TableSampling::Rejection };
+    Configuration::new(name, "tabulated", BsdfKind::Tabulated(model)).named("sampling", "rejection")
 }
 
 fn diffuse(name: &'static str, reflectance: [f32; 4]) -> Configuration {

@@ -7,7 +7,7 @@ use etendue_spectrum::Wavelengths;
 use super::{Materials, Perturbation, spec};
 use crate::assets::Assets;
 use crate::bsdf::BsdfKind;
-use crate::bsdf::tabulated::{BrdfTable, Tabulated};
+use crate::bsdf::tabulated::{BrdfTable, TableSampling, Tabulated};
 use crate::parameters::{ParameterSpec, Parameters};
 
 /// Parameters of `tabulated`.
@@ -15,13 +15,17 @@ use crate::parameters::{ParameterSpec, Parameters};
 pub struct TabulatedMaterial {
     /// The values.
     pub table: &'static BrdfTable,
+    /// How directions are found.
+    pub sampling: TableSampling,
     /// Relief.
     pub perturbation: Perturbation,
 }
 
 impl PartialEq for TabulatedMaterial {
     fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.table, other.table) && self.perturbation == other.perturbation
+        std::ptr::eq(self.table, other.table)
+            && self.sampling == other.sampling
+            && self.perturbation == other.perturbation
     }
 }
 
@@ -29,6 +33,12 @@ impl TabulatedMaterial {
     /// What scene files may say.
     pub const PARAMETERS: &'static [ParameterSpec] = &[
         spec::spec("filename", "string", "", "File with the table, see docs/scattering/tabulated.md."),
+        spec::spec(
+            "sampling",
+            "string",
+            "cells",
+            "Of the glossy lobe: cells of half vectors (cells), or rejection of even directions (rejection).",
+        ),
         spec::DISPLACEMENT,
         spec::NORMAL_MAP,
     ];
@@ -42,11 +52,16 @@ impl TabulatedMaterial {
                 format!("the table \"{filename}\" reflects {:.2} times what arrives", table.albedo_max());
             p.diagnostics().warning(span, message);
         }
-        Some(Self { table, perturbation: Perturbation::build(p, materials) })
+        let sampling = p.choice(
+            "sampling",
+            "cells",
+            &[("cells", TableSampling::Cells), ("rejection", TableSampling::Rejection)],
+        );
+        Some(Self { table, sampling, perturbation: Perturbation::build(p, materials) })
     }
 
     pub(super) const fn bsdf(&self, lambda: &Wavelengths) -> BsdfKind {
-        BsdfKind::Tabulated(Tabulated { table: self.table, lambda: *lambda })
+        BsdfKind::Tabulated(Tabulated { table: self.table, lambda: *lambda, sampling: self.sampling })
     }
 }
 

@@ -77,6 +77,12 @@ impl Principled {
         }
     }
 
+    /// Reflectance along the normal, of coat and metal together.
+    #[must_use]
+    pub const fn f0(&self) -> Sampled {
+        self.f0
+    }
+
     /// With rougher facets where they are narrow.
     pub(super) fn regularized(self) -> Self {
         Self { microfacets: self.microfacets.regularized(), ..self }

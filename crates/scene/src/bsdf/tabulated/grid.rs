@@ -54,6 +54,11 @@ impl BrdfGrid {
         self.rgb.iter().fold([f32::MAX; 3], |least, value| std::array::from_fn(|c| least[c].min(value[c])))
     }
 
+    /// The largest sum of the channels anywhere.
+    pub(super) fn largest_sum(&self) -> f32 {
+        self.rgb.iter().map(|value| value.iter().sum()).fold(0.0, f32::max)
+    }
+
     /// f for directions above the surface, the same if they are exchanged, to the last bit.
     #[must_use]
     pub fn at(&self, wo: Vector3, wi: Vector3) -> [f32; 3] {

@@ -4,13 +4,14 @@
 //! nothing, so that the model is reciprocal whatever the numbers (Rusinkiewicz 1998, "A New Change of Variables for
 //! Efficient BRDF Representation"). What f has everywhere is its diffuse lobe, the rest the glossy one. That is
 //! sampled by half vectors from tables of constant cells, one table for each of [`BrdfTable::N_VIEWS`] ranges of the
-//! angle of view, mixed with a tenth of even scattering for what falls between the cells.
+//! angle of view, mixed with a tenth of even scattering for what falls between the cells; or by [rejection].
 //!
 //! Colours are linear sRGB; each interpolated value becomes a spectrum of its own, as a texel does.
 //!
 //! Tables live as long as the process: [`BrdfTable::of`] keeps one for each different grid.
 
 mod grid;
+mod rejection;
 mod table;
 
 use etendue_math::{Point2, Vector3};
@@ -30,11 +31,24 @@ pub struct Tabulated {
     pub table: &'static BrdfTable,
     /// Where they are wanted.
     pub lambda: Wavelengths,
+    /// How directions of the glossy lobe are found.
+    pub sampling: TableSampling,
+}
+
+/// How the glossy lobe of a table is sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableSampling {
+    /// By cells of half vectors.
+    Cells,
+    /// By rejection of directions spread by the cosine.
+    Rejection,
 }
 
 impl PartialEq for Tabulated {
     fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.table, other.table) && self.lambda == other.lambda
+        std::ptr::eq(self.table, other.table)
+            && self.lambda == other.lambda
+            && self.sampling == other.sampling
     }
 }
 
@@ -66,11 +80,11 @@ impl Lobed for Tabulated {
     }
 
     fn sample_glossy(&self, wo: Vector3, u_choice: f32, u: Point2) -> Option<Vector3> {
-        self.table.sample_glossy(wo, u_choice, u)
+        self.table.sample_glossy(self.sampling, wo, u_choice, u)
     }
 
     fn glossy_pdf(&self, wo: Vector3, wi: Vector3) -> f32 {
-        self.table.glossy_pdf(wo, wi)
+        self.table.glossy_pdf(self.sampling, wo, wi)
     }
 
     fn alpha(&self) -> f32 {

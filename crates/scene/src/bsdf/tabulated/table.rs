@@ -5,10 +5,12 @@
 //! `p_h / (4 wo·h)` (Torrance and Sparrow 1967). Rings of cells are as wide as the nodes of the grid are apart.
 
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, PI, TAU};
+use std::sync::OnceLock;
 
 use etendue_math::{Bounds2, PiecewiseConstant2, Point2, Vector3, lerp, sqr, warp};
 
-use super::BrdfGrid;
+use super::rejection::Rejection;
+use super::{BrdfGrid, TableSampling};
 use crate::bsdf::kept::Kept;
 
 /// Rings of cells over theta_h.
@@ -31,6 +33,8 @@ pub struct BrdfTable {
     shares: [f32; 2],
     albedo_max: f32,
     alpha: f32,
+    /// Computed if it is wanted.
+    rejection: OnceLock<Rejection>,
 }
 
 impl BrdfTable {
@@ -55,7 +59,15 @@ impl BrdfTable {
         // The rest of a constant is rounding.
         let glossy = Some(mean(glossy)).filter(|share| *share > 1e-4 * albedo_max).unwrap_or(0.0);
         let alpha = alpha_of_half_width(grid.half_width());
-        Self { shares: [mean(even), glossy], grid, diffuse, views, albedo_max, alpha }
+        Self {
+            shares: [mean(even), glossy],
+            grid,
+            diffuse,
+            views,
+            albedo_max,
+            alpha,
+            rejection: OnceLock::new(),
+        }
     }
 
     /// Greatest fraction of light that it reflects, over channels and the middles of the ranges of view.
@@ -92,7 +104,36 @@ impl BrdfTable {
         (view, if view.integral() > 0.0 { EVEN } else { 1.0 })
     }
 
-    pub(super) fn sample_glossy(&self, wo: Vector3, u_choice: f32, u: Point2) -> Option<Vector3> {
+    fn rejection(&self) -> &Rejection {
+        self.rejection.get_or_init(|| Rejection::new(&self.grid, self.diffuse))
+    }
+
+    pub(super) fn sample_glossy(
+        &self,
+        sampling: TableSampling,
+        wo: Vector3,
+        u_choice: f32,
+        u: Point2,
+    ) -> Option<Vector3> {
+        match sampling {
+            TableSampling::Cells => self.sample_cells(wo, u_choice, u),
+            TableSampling::Rejection => {
+                Some(self.rejection().sample(|wi| rest(&self.grid, self.diffuse, wo, wi), u_choice, u))
+            }
+        }
+    }
+
+    pub(super) fn glossy_pdf(&self, sampling: TableSampling, wo: Vector3, wi: Vector3) -> f32 {
+        match sampling {
+            TableSampling::Cells => self.cells_pdf(wo, wi),
+            TableSampling::Rejection => {
+                let theta_o = wo.x.hypot(wo.y).atan2(wo.z);
+                self.rejection().pdf(theta_o, rest(&self.grid, self.diffuse, wo, wi), wi.z)
+            }
+        }
+    }
+
+    fn sample_cells(&self, wo: Vector3, u_choice: f32, u: Point2) -> Option<Vector3> {
         let (view, even) = self.view(wo);
         if u_choice < even {
             return Some(warp::sample_cosine_hemisphere(u));
@@ -103,7 +144,7 @@ impl BrdfTable {
         (cos > 0.0).then(|| h * (2.0 * cos) - wo)
     }
 
-    pub(super) fn glossy_pdf(&self, wo: Vector3, wi: Vector3) -> f32 {
+    fn cells_pdf(&self, wo: Vector3, wi: Vector3) -> f32 {
         let (view, even) = self.view(wo);
         let Some(h) = (wo + wi).try_normalized() else { return 0.0 };
         let ring = N_RINGS as f32 * (h.x.hypot(h.y).atan2(h.z) / FRAC_PI_2).sqrt();
@@ -121,7 +162,7 @@ pub(in crate::bsdf) fn alpha_of_half_width(theta: Option<f32>) -> f32 {
 }
 
 /// f without its diffuse lobe.
-fn rest(grid: &BrdfGrid, diffuse: [f32; 3], wo: Vector3, wi: Vector3) -> [f32; 3] {
+pub(super) fn rest(grid: &BrdfGrid, diffuse: [f32; 3], wo: Vector3, wi: Vector3) -> [f32; 3] {
     let f = grid.at(wo, wi);
     std::array::from_fn(|c| (f[c] - diffuse[c]).max(0.0))
 }

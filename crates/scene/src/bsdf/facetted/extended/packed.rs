@@ -170,6 +170,12 @@ impl ExtendedPrincipled {
         self.unpack().pdf(wo, wi, lobes)
     }
 
+    /// Share of the surface that is under a clear coat, of index 1.5.
+    #[must_use]
+    pub fn clearcoat(&self) -> f32 {
+        self.coat_share.get()
+    }
+
     /// With rougher facets where they are narrow.
     #[must_use]
     pub(in crate::bsdf) fn regularized(self) -> Self {
