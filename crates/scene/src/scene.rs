@@ -284,6 +284,16 @@ impl Scene {
         self.light(light).le(&self.light_context(), point.ng, point.uv, surface.wo, lambda)
     }
 
+    /// Radiance in W/(m^2 sr nm) of the ambient term: what the surface shows the eye whatever falls on it. It lights nothing,
+    /// so that only rays from the camera may ask for it (SPEC BRDF-10).
+    #[inline]
+    #[must_use]
+    pub fn ambient(&self, surface: &Surface, lambda: &Wavelengths) -> Sampled {
+        self.materials
+            .ambient(surface.material)
+            .map_or(Sampled::ZERO, |ambient| ambient.sample(&self.textures.spectra, lambda))
+    }
+
     /// The share of light that gets from a point of a light to a surface: 0 or 1 without media. `interface` surfaces
     /// let it pass.
     #[inline]

@@ -1,6 +1,6 @@
 //! Odd but legal scenes render.
 
-use crate::support::{Folder, mean, scene, unlit_scene};
+use crate::support::{Folder, WORLD_LINE, mean, scene, unlit_scene};
 
 /// Renders a scene without a complaint and returns the mean of the image.
 #[track_caller]
@@ -183,4 +183,34 @@ fn deep_mixtures() {
     }
     world += "NamedMaterial \"m4999\"\nShape \"sphere\"";
     assert!(brightness(&scene("", &world), "") > 0.0);
+}
+
+/// Numbers of materials that mean nothing are named with their place, and with the value that is taken; none ends the render.
+#[test]
+fn materials() {
+    let check = |material: &str, says: &[&str]| {
+        let folder = Folder::with_scene(&scene("", &format!("{material}\nShape \"sphere\"")));
+        let mut run = folder.run("render scene.pbrt -o out.exr --spp 1").expect(0);
+        run = run.says(&format!("scene.pbrt:{WORLD_LINE}:"));
+        for text in says {
+            run = run.says(text);
+        }
+    };
+    let negative = "\"roughness\" is -0.2, but must be in [0, 10]; it is taken as 0";
+    check("Material \"conductor\" \"float roughness\" -0.2", &[negative]);
+    check("Material \"dielectric\" \"float roughness\" -0.2", &[negative]);
+    let bright = "is a reflectance above 1 (1.4); it is clamped to 1";
+    check("Material \"diffuse\" \"float reflectance\" 1.4", &[bright]);
+    check("Material \"conductor\" \"float reflectance\" 1.4", &[bright]);
+    let spectrum = "Material \"diffuse\" \"spectrum reflectance\" [ 400 0.5 500 1.4 600 0.5 ]";
+    check(spectrum, &[bright]);
+    for material in ["dielectric", "thindielectric", "coateddiffuse"] {
+        check(&format!("Material \"{material}\" \"float eta\" 0"), &["must be positive; it is taken as 1"]);
+    }
+    let gap = "Material \"dielectric\" \"spectrum eta\" [ 400 1.5 600 -1 700 1.5 ]";
+    check(gap, &["must be positive; it is taken as 1 where it is not"]);
+    check("Material \"conductor\" \"float k\" -2", &["\"k\" is negative; it is taken as its absolute value"]);
+    let grows = "Material \"dielectric\" \"spectrum absorption\" [ 400 -3 700 1 ]";
+    check(grows, &["negative absorption is taken as 0"]);
+    check("Material \"phong\" \"float ambient\" -1", &["a negative ambient term is taken as 0"]);
 }

@@ -42,6 +42,10 @@ fn interfaces(kind: &BsdfKind) -> Vec<(&'static str, Interface)> {
         BsdfKind::Dielectric(bsdf) => surface(Dielectric(bsdf.eta)),
         BsdfKind::Facetted(Facetted::Dielectric(bsdf)) => surface(Dielectric(bsdf.eta)),
         BsdfKind::Facetted(Facetted::CompensatedDielectric(bsdf)) => surface(Dielectric(bsdf.eta())),
+        BsdfKind::Facetted(Facetted::Principled(bsdf)) => surface(Fit(bsdf.f0())),
+        BsdfKind::Facetted(Facetted::Extended(bsdf)) if bsdf.clearcoat() > 0.0 => {
+            vec![("coat", Dielectric(1.5))]
+        }
         BsdfKind::ThinDielectric(bsdf) => surface(Dielectric(bsdf.eta)),
         BsdfKind::Classic(Classic::VGroove(VGroove { fresnel, .. })) => surface(match *fresnel {
             FacetFresnel::Exact { eta, k } => Conductor(eta, k),
@@ -63,8 +67,8 @@ fn interfaces(kind: &BsdfKind) -> Vec<(&'static str, Interface)> {
 
 /// Fresnel reflectance against the angle of incidence for each interface, exact and by Schlick's fit in turn; empty for
 /// models without one. Of a transparent one also from the inside, where the bare fit, with the cosine of the incident
-/// light, fails. Where a model knows the fit alone, the exact curve is that of the metal, of real index 1, that reflects as
-/// much along the normal.
+/// light, fails. Where a model knows the fit alone, the exact curve is that of the glass that reflects as much along the
+/// normal or, where it reflects more than a fifth or in colour, of the metal of real index 1.
 #[must_use]
 pub fn fresnel_curves(kind: &BsdfKind) -> Vec<FresnelCurves> {
     let curves_of = |(place, interface)| match interface {
@@ -72,6 +76,11 @@ pub fn fresnel_curves(kind: &BsdfKind) -> Vec<FresnelCurves> {
             FresnelCurves { place, is_metal: false, curves: dielectric_curves(eta) }
         }
         Interface::Conductor(eta, k) => FresnelCurves { place, is_metal: true, curves: metal_curves(eta, k) },
+        Interface::Fit(f0) if f0 == Sampled::splat(f0[0]) && f0[0] < 0.2 => {
+            let root = f0[0].max(0.0).sqrt();
+            let curves = dielectric_curves((1.0 + root) / (1.0 - root));
+            FresnelCurves { place, is_metal: false, curves }
+        }
         Interface::Fit(f0) => {
             // F0 = k² / (4 + k²) where the real index is 1.
             let f0 = f0.clamp(0.0, 0.9999);

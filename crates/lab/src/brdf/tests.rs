@@ -92,6 +92,11 @@ fn coats_have_fresnel_curves() {
         );
         assert!(at(&curves[0], 90.0) > 0.99 && at(&curves[1], 90.0) > 0.99, "{model}");
     }
+    let coated = fresnel_of("principled", &["float clearcoat 1"]);
+    let plastic = fresnel_of("principled", &["float metallic 0", "float ior 1.5"]);
+    for curves in [coated, plastic] {
+        assert!((at(&curves[0], 0.0) - 0.04).abs() < 1e-4 && (at(&curves[0], 60.0) - 0.0892).abs() < 1e-3);
+    }
     for bounces in ["conductor", "dielectric"] {
         let bounces = subject(bounces, &["float roughness 0.3", "bool multiplescattering true"]);
         assert_eq!(fresnel_curves(&bounces.kind).len(), 1);

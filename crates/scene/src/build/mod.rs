@@ -74,7 +74,8 @@ impl Scene {
         builder.check_accelerator();
         let lights = builder.build_lights(&geometry);
         // After an error it may be the light that is missing.
-        if lights.lights.is_empty() && !builder.context.diagnostics.has_errors() {
+        let is_dark = lights.lights.is_empty() && !builder.materials.have_ambient();
+        if is_dark && !builder.context.diagnostics.has_errors() {
             builder.context.diagnostics.warning(None, "the scene has no lights; the image will be black");
         }
         let Builder { mut context, mut textures, materials, attributes, .. } = builder;

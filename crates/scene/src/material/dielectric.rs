@@ -1,8 +1,9 @@
 //! Glass, water, diamond: a boundary between transparent media, smooth or rough.
 
-use etendue_spectrum::{Spectrum, Wavelengths};
+use etendue_spectrum::Wavelengths;
 
 use super::index::RefractiveIndex;
+use super::limits;
 use super::roughness::{Roughness, RoughnessNames};
 use super::{FacetOptions, MaterialContext, Materials, Perturbation, spec};
 use crate::bsdf::facetted::CompensatedDielectric;
@@ -51,7 +52,7 @@ impl DielectricMaterial {
     pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
         let mut medium = |name| {
             let absorption = p.spectrum(name, SpectrumRole::Unbounded)?;
-            if matches!(absorption, Spectrum::Constant(sigma_a) if sigma_a < 0.0) {
+            if limits::least(p, &absorption) < 0.0 {
                 let span = p.span_of(name);
                 p.diagnostics()
                     .warning(span, "light does not grow on its way: negative absorption is taken as 0");

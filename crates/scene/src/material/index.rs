@@ -2,6 +2,7 @@
 
 use etendue_spectrum::{Spectrum, Wavelengths};
 
+use super::limits;
 use crate::parameters::{Parameters, SpectrumRole};
 use crate::texture::{SpectrumTexture, TextureContext, Textures};
 
@@ -18,10 +19,12 @@ impl RefractiveIndex {
 
     pub(super) fn build(p: &mut Parameters<'_, '_>, name: &'static str, default: Self) -> Self {
         let Some(spectrum) = p.spectrum(name, SpectrumRole::Unbounded) else { return default };
-        if matches!(spectrum, Spectrum::Constant(eta) if eta <= 0.0) {
+        if limits::has_gap(p, &spectrum) {
             let span = p.span_of(name);
-            let message =
-                format!("\"{name}\" is an index of refraction, which must be positive; it is taken as 1");
+            let place = if spectrum.is_constant() { "" } else { " where it is not" };
+            let message = format!(
+                "\"{name}\" is an index of refraction, which must be positive; it is taken as 1{place}"
+            );
             p.diagnostics().warning(span, message);
         }
         Self(spectrum)

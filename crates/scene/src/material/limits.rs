@@ -45,12 +45,25 @@ pub(super) fn albedo_opt(p: &mut Parameters<'_, '_>, name: &'static str) -> Opti
 pub(super) fn factor(p: &mut Parameters<'_, '_>, name: &'static str, default: f32) -> SpectrumTexture {
     let texture = p.spectrum_texture(name, Spectrum::Constant(default), SpectrumRole::Unbounded);
     let Some(spectrum) = texture.constant() else { return texture };
-    let least = wavelengths().map(|nm| spectrum.at(&p.context.spectra, nm)).fold(f32::INFINITY, f32::min);
+    let least = least(p, &spectrum);
     if least < 0.0 {
         let span = p.span_of(name);
         p.diagnostics().error(span, format!("\"{name}\" is negative ({least})"));
     }
     texture
+}
+
+/// The least value of a spectrum over the rendered wavelengths.
+pub(super) fn least(p: &Parameters<'_, '_>, spectrum: &Spectrum) -> f32 {
+    wavelengths().map(|nm| spectrum.at(&p.context.spectra, nm)).fold(f32::INFINITY, f32::min)
+}
+
+/// Whether an index of refraction is not positive somewhere between wavelengths where it is: beyond its data a spectrum is 0.
+pub(super) fn has_gap(p: &Parameters<'_, '_>, spectrum: &Spectrum) -> bool {
+    let values: Vec<f32> = wavelengths().map(|nm| spectrum.at(&p.context.spectra, nm)).collect();
+    let is_given = |value: &f32| *value != 0.0;
+    let ends = values.iter().position(is_given).zip(values.iter().rposition(is_given));
+    ends.is_none_or(|(first, last)| values[first..=last].iter().any(|value| *value <= 0.0))
 }
 
 /// Warns if two reflectances of one surface sum to more than 1 in some band: single wavelengths of saturated colours

@@ -88,6 +88,22 @@ impl Materials {
         &self.extensions[id.0 as usize]
     }
 
+    /// What the material shows the eye whatever falls on it, if it does; a mixture does not.
+    #[inline]
+    #[must_use]
+    pub fn ambient(&self, id: MaterialId) -> Option<&Spectrum> {
+        match self.get(id) {
+            Material::Classic(material) => material.ambient.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// True if some material has an ambient term.
+    #[must_use]
+    pub fn have_ambient(&self) -> bool {
+        (0..self.len()).any(|i| self.ambient(MaterialId(i as u32)).is_some())
+    }
+
     /// What transparent surfaces have on their sides.
     #[inline]
     #[must_use]

@@ -44,10 +44,15 @@ impl Metal {
     }
 
     fn index(p: &mut Parameters<'_, '_>, name: &'static str, copper: &str) -> SpectrumTexture {
+        let span = p.span_of(name);
         if let Some(given) = p.spectrum_texture_opt(name, SpectrumRole::Unbounded) {
+            // Fresnel's equations have squares alone.
+            if given.constant().is_some_and(|spectrum| limits::least(p, &spectrum) < 0.0) {
+                let message = format!("\"{name}\" is negative; it is taken as its absolute value");
+                p.diagnostics().warning(span, message);
+            }
             return given;
         }
-        let span = p.span_of(name);
         let spectrum = p.context.named_spectrum(copper, span).unwrap_or(Spectrum::Constant(1.0));
         SpectrumTexture::Constant(spectrum)
     }

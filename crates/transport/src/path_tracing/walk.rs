@@ -119,6 +119,9 @@ impl<'s> Walk<'s> {
             }
             let surface = scene.surface(&self.ray, &hit);
             self.add_emission(scene, &surface, path);
+            if self.depth == 0 {
+                self.add(scene.ambient(&surface, path.lambda) * self.beta, path.layers);
+            }
             if is_last {
                 return None;
             }

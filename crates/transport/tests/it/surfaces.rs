@@ -282,3 +282,39 @@ fn mixtures_of_interfaces_let_the_last_segment_pass() {
     assert!(open.iter().all(|value| *value > 0.4));
     expect_equal_pixels("under a sheet", &seen_under(sheet), &open, 1e-4);
 }
+
+/// SPEC BRDF-10: with the lights off the ambient term is a constant image, however deep paths go, and other surfaces are not
+/// lit by it; with a light on it is added to what is reflected.
+#[test]
+fn the_ambient_term_is_for_the_eye_alone() {
+    let ambient = "Material \"phong\" \"rgb ambient\" [0.3 0.3 0.3]";
+    let inside = format!("{ambient} ReverseOrientation Shape \"sphere\" \"float radius\" 1");
+    let camera = "LookAt 0 0 -0.5  0 0 1  0 1 0 Camera \"perspective\" \"float fov\" 60";
+    let integrator = "\"integer maxdepth\" 6";
+    let alone = Setup { integrator, camera, world: &inside, ..Setup::default() };
+    expect_mean("ambient alone", &pixel_moments(&alone.film("ambient", 64)), 0.3, 0.02);
+    // A ball with the term in a white room without: behind it is nothing to see.
+    let world = format!(
+        "Material \"diffuse\" \"float reflectance\" 1 ReverseOrientation Shape \"sphere\" \"float radius\" 1
+        AttributeBegin {ambient} Translate -0.6 0 0.3 Shape \"sphere\" \"float radius\" 0.2 AttributeEnd"
+    );
+    let lit_by_none = Setup { integrator, camera, world: &world, ..Setup::default() };
+    let values = luminance(&lit_by_none.film("ambient ball", 16));
+    let n_dark = values.iter().filter(|v| **v == 0.0).count();
+    assert!(
+        n_dark > values.len() / 2 && n_dark < values.len(),
+        "{n_dark} of {} pixels are dark",
+        values.len()
+    );
+    let lamp = format!("LightSource \"infinite\" {}", lit("L", 1.0));
+    let ball = |ambient: &str| {
+        let material = format!("Material \"phong\" {ambient} \"float kd\" 0.5 \"float ks\" 0");
+        let world = format!("{lamp} {material} Shape \"sphere\" \"float radius\" 4");
+        let camera = "LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 10";
+        pixel_moments(
+            &Setup { integrator, camera, world: &world, ..Setup::default() }.film("ambient and light", 128),
+        )
+    };
+    expect_mean("both", &ball("\"rgb ambient\" [0.3 0.3 0.3]"), 0.8, 0.02);
+    expect_mean("light alone", &ball(""), 0.5, 0.02);
+}

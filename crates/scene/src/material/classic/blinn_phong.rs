@@ -20,8 +20,14 @@ pub struct BlinnPhongMaterial {
 
 impl BlinnPhongMaterial {
     /// What scene files may say.
-    pub const PARAMETERS: &'static [ParameterSpec] =
-        &[LobeColors::KD, LobeColors::KS, spec::EXPONENT, spec::DISPLACEMENT, spec::NORMAL_MAP];
+    pub const PARAMETERS: &'static [ParameterSpec] = &[
+        LobeColors::KD,
+        LobeColors::KS,
+        LobeColors::AMBIENT,
+        spec::EXPONENT,
+        spec::DISPLACEMENT,
+        spec::NORMAL_MAP,
+    ];
 
     pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
         Self {

@@ -1,9 +1,11 @@
 //! What the diffuse part and the highlight of a surface reflect.
 
-use etendue_spectrum::{Sampled, Wavelengths};
+use etendue_spectrum::{Sampled, Spectrum, Wavelengths};
 
+use crate::light::LightUnits;
+use crate::light::emission::emitted;
 use crate::material::{MaterialContext, limits};
-use crate::parameters::{ParameterSpec, Parameters};
+use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
 use crate::texture::{SpectrumTexture, Textures};
 
 /// Albedo of the diffuse part and strength of the highlight. Where they sum to more than 1 both are scaled down.
@@ -30,6 +32,25 @@ impl LobeColors {
         unit: "",
         doc: "Strength of the highlight, in [0, 1]; kd + ks may not exceed 1.",
     };
+
+    pub(super) const AMBIENT: ParameterSpec = ParameterSpec {
+        name: "ambient",
+        kind: "spectrum",
+        default: "0",
+        unit: "cd/m^2",
+        doc: "Ambient term k_a I_a: radiance that the eye sees whatever falls here; it lights nothing.",
+    };
+
+    /// The ambient term, in the unit of lights.
+    pub(super) fn ambient(p: &mut Parameters<'_, '_>) -> Option<Spectrum> {
+        let spectrum = p.spectrum("ambient", SpectrumRole::Illuminant)?;
+        if matches!(spectrum, Spectrum::Constant(radiance) if radiance < 0.0) {
+            let span = p.span_of("ambient");
+            p.diagnostics().warning(span, "a negative ambient term is taken as 0");
+            return None;
+        }
+        Some(emitted(spectrum, 1.0, LightUnits::Photometric, &p.context.spectra))
+    }
 
     pub(super) fn build(p: &mut Parameters<'_, '_>) -> Self {
         let (kd, ks) = (limits::albedo(p, "kd", 0.5), limits::albedo(p, "ks", 0.2));

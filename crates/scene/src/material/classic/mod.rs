@@ -13,7 +13,7 @@ mod smooth_coat;
 mod v_groove;
 mod ward;
 
-use etendue_spectrum::Wavelengths;
+use etendue_spectrum::{Spectrum, Wavelengths};
 
 pub use ashikhmin_shirley::AshikhminShirleyMaterial;
 pub use blinn_phong::BlinnPhongMaterial;
@@ -38,6 +38,8 @@ use crate::texture::Textures;
 pub struct ClassicMaterial {
     /// Which model, with its parameters.
     pub model: ClassicModel,
+    /// Radiance that it shows the eye whatever falls on it: the ambient term (SPEC BRDF-10).
+    pub ambient: Option<Spectrum>,
     /// Relief.
     pub perturbation: Perturbation,
 }
@@ -164,7 +166,9 @@ impl ClassicMaterial {
             "smoothcoat" => ClassicModel::SmoothCoat(SmoothCoatMaterial::build(p)),
             _ => return None,
         };
-        Some(Self { model, perturbation: Perturbation::build(p, materials) })
+        let has_ambient = matches!(model, ClassicModel::Phong(_) | ClassicModel::BlinnPhong(_));
+        let ambient = if has_ambient { LobeColors::ambient(p) } else { None };
+        Some(Self { model, ambient, perturbation: Perturbation::build(p, materials) })
     }
 
     /// How it scatters at a point.

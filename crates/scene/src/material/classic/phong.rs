@@ -25,6 +25,7 @@ impl PhongMaterial {
     pub const PARAMETERS: &'static [ParameterSpec] = &[
         LobeColors::KD,
         LobeColors::KS,
+        LobeColors::AMBIENT,
         spec::EXPONENT,
         ParameterSpec {
             name: "form",
