@@ -173,7 +173,6 @@ fn hair_rows() -> Vec<Configuration> {
     let rows = [
         hair("hair, brown", 0.4, [0.3, 0.3, 2.0], BROWN),
         hair("hair, sleek", -0.7, [0.15, 0.2, 3.0], BROWN),
-        hair("hair, rough", 0.2, [0.9, 0.8, 0.0], BROWN),
         hair("hair, white", 0.3, [0.3, 0.3, 2.0], [0.0; 4]).lossless(),
         hair("hair, white, rough, at its edge", 1.0, [1.0, 1.0, 10.0], [0.0; 4]).lossless(),
     ];

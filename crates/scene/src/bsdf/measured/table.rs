@@ -80,9 +80,7 @@ impl MeasuredTable {
     pub(super) fn sample(&self, wo: Vector3, u: Point2) -> Option<Vector3> {
         let view = self.view(wo);
         let m = self.vndf.sample(&view.mixture, self.luminance.sample(&view.mixture, u));
-        let (sin_theta, cos_theta) = sin_cos_turns(0.25 * sqr(m.x));
-        let (sin_phi, cos_phi) = sin_cos_turns(m.y - 0.5 + view.azimuth / TAU);
-        let facet = Vector3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta);
+        let facet = of_square(m, view.azimuth);
         let wi = reflect(view.wo, facet);
         (view.wo.dot(facet) > 0.0).then(|| view.flipped(wi).normalized())
     }
@@ -124,10 +122,12 @@ impl MeasuredTable {
 
     fn view(&self, wo: Vector3) -> View {
         let parts = self.brdf.parts();
+        // Azimuths begin at -180°: where y is -0, not 0.
+        let to_negative = |c: f32| if c.is_sign_positive() { -1.0 } else { 1.0 };
         let flip = match self.brdf.symmetry() {
             Symmetry::Isotropic | Symmetry::None => [1.0; 2],
-            Symmetry::Turned => [if wo.y > 0.0 { -1.0 } else { 1.0 }; 2],
-            Symmetry::Mirrored => [wo.x, wo.y].map(|c| if c > 0.0 { -1.0 } else { 1.0 }),
+            Symmetry::Turned => [to_negative(wo.y); 2],
+            Symmetry::Mirrored => [to_negative(wo.x), to_negative(wo.y)],
         };
         let wo = Vector3::new(wo.x * flip[0], wo.y * flip[1], wo.z);
         let (theta, phi) = (atan2(wo.x.hypot(wo.y), wo.z), atan2(wo.y, wo.x));
@@ -157,6 +157,13 @@ pub(super) fn in_square(w: Vector3, azimuth: f32) -> Point2 {
     let theta = atan2(w.x.hypot(w.y), w.z);
     let turns = (atan2(w.y, w.x) - azimuth) / TAU + 0.5;
     Point2::new((theta / FRAC_PI_2).sqrt(), turns - turns.floor())
+}
+
+/// The direction at a place of the unit square.
+pub(super) fn of_square(p: Point2, azimuth: f32) -> Vector3 {
+    let (sin_theta, cos_theta) = sin_cos_turns(0.25 * sqr(p.x));
+    let (sin_phi, cos_phi) = sin_cos_turns(p.y - 0.5 + azimuth / TAU);
+    Vector3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 }
 
 /// Solid angle per area of the unit square. At the pole, where it vanishes, a little more.

@@ -6,7 +6,7 @@ use etendue_math::{Point2, Vector3, sqr};
 
 use super::data::{MeasuredBrdf, MeasuredFault, MeasuredParts};
 use super::maps::{Densities, Maps};
-use super::table::{in_square, solid_angle};
+use super::table::{in_square, of_square, solid_angle};
 use crate::bsdf::fresnel::reflect;
 
 /// Where to measure.
@@ -41,68 +41,69 @@ impl MeasuredBrdf {
         ndf: impl Fn(Vector3) -> f32,
         f: impl Fn(Vector3, Vector3, f32) -> f32,
     ) -> Result<Self, MeasuredFault> {
-        let n_least = grid.n_facets[0].min(grid.n_facets[1]).min(grid.n_spectra);
-        if n_least < 2 || grid.n_phi == 0 {
-            let why = "should have at least 2 by 2 values".to_owned();
-            return Err(MeasuredFault { field: "spectra", why });
-        }
-        let is_isotropic = grid.n_phi == 1;
-        let phi_i = steps(grid.n_phi, -PI, -FRAC_PI_2);
-        let theta_i = steps(grid.n_theta, 0.0, THETA_MAX);
-        let directions: Vec<Vector3> = phi_i
-            .iter()
-            .flat_map(|phi| {
-                theta_i.iter().map(|theta| direction(*theta, if is_isotropic { 0.0 } else { *phi }))
-            })
-            .collect();
-        let facets = grid.n_facets;
+        grid.check()?;
+        let (views, facets) = (grid.views(), grid.n_facets);
         // Of isotropic models two rows are enough.
-        let of_directions = if is_isotropic { [facets[0], 2] } else { facets };
-        let ndf_map = map(of_directions, |p| ndf(facet(p)));
+        let by_direction = if grid.n_phi == 1 { [facets[0], 2] } else { facets };
         let area = Area::of(&ndf);
-        let sigma = map(of_directions, |p| area.seen_from(facet(p)));
-        let vndf = maps(
-            facets,
-            directions.iter().map(|wo| {
-                |p: Point2| {
-                    let m = facet(p);
-                    ndf(m) * wo.dot(m).max(0.0) * solid_angle(p.x)
-                }
-            }),
-        );
+        let sigma = maps(by_direction, &[()], |(), p| area.seen_from(of_square(p, 0.0)));
+        let vndf = maps(facets, &views, |wo, p| {
+            let m = of_square(p, 0.0);
+            ndf(m) * wo.dot(m).max(0.0) * solid_angle(p.x)
+        });
         let densities = Densities::new(vndf.clone());
-        let size = [grid.n_spectra; 2];
-        let spectra = maps(
-            size,
-            directions.iter().enumerate().flat_map(|(condition, wo)| {
-                let (densities, sigma, ndf, f) = (&densities, &sigma, &ndf, &f);
-                grid.wavelengths.iter().map(move |nm| {
-                    move |u: Point2| {
-                        let m = densities.sample(&[(condition, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)], u);
-                        // f cos_i goes through 0 at the horizon, also between nodes.
-                        let reflected = reflect(*wo, facet(m));
-                        let wi = Vector3 { z: reflected.z.abs(), ..reflected };
-                        let density = (*wo + wi).try_normalized().map_or(0.0, ndf);
-                        let scale = 4.0 * sigma.at(0, in_square(*wo, 0.0)) / density;
-                        if scale.is_finite() { f(*wo, wi, *nm) * reflected.z * scale } else { 0.0 }
-                    }
-                })
-            }),
-        );
-        let luminance = mean_of_wavelengths(&spectra, grid.wavelengths.len());
-        let wavelengths = grid.wavelengths.clone();
-        let jacobian = true;
+        let spectra = maps([grid.n_spectra; 2], &grid.conditions(&views), |(view, wo, nm), u| {
+            let m = densities.sample(&[(*view, 1.0), (0, 0.0), (0, 0.0), (0, 0.0)], u);
+            // f cos_i goes through 0 at the horizon, also between nodes.
+            let reflected = reflect(*wo, of_square(m, 0.0));
+            let wi = Vector3 { z: reflected.z.abs(), ..reflected };
+            let density = (*wo + wi).try_normalized().map_or(0.0, &ndf);
+            let scale = 4.0 * sigma.at(0, in_square(*wo, 0.0)) / density;
+            if scale.is_finite() { f(*wo, wi, *nm) * reflected.z * scale } else { 0.0 }
+        });
         Self::new(MeasuredParts {
-            phi_i,
-            theta_i,
-            wavelengths,
-            ndf: ndf_map,
+            phi_i: grid.phi_i(),
+            theta_i: grid.theta_i(),
+            wavelengths: grid.wavelengths.clone(),
+            ndf: maps(by_direction, &[()], |(), p| ndf(of_square(p, 0.0))),
             sigma,
             vndf,
-            luminance,
+            luminance: mean_of_wavelengths(&spectra, grid.wavelengths.len()),
             spectra,
-            jacobian,
+            jacobian: true,
         })
+    }
+}
+
+impl MeasuredGrid {
+    fn check(&self) -> Result<(), MeasuredFault> {
+        let n_least = self.n_facets[0].min(self.n_facets[1]).min(self.n_spectra);
+        let why = "should have at least 2 by 2 values".to_owned();
+        if n_least >= 2 { Ok(()) } else { Err(MeasuredFault { field: "spectra", why }) }
+    }
+
+    fn phi_i(&self) -> Vec<f32> {
+        steps(self.n_phi, -PI, -FRAC_PI_2)
+    }
+
+    fn theta_i(&self) -> Vec<f32> {
+        steps(self.n_theta, 0.0, THETA_MAX)
+    }
+
+    /// Directions of incidence; of isotropic models in the plane from which azimuths of facets count.
+    fn views(&self) -> Vec<Vector3> {
+        let azimuth = |phi: f32| if self.n_phi == 1 { 0.0 } else { phi };
+        let view = |phi: f32, theta: f32| {
+            of_square(Point2::new((theta / FRAC_PI_2).sqrt(), 0.5 + azimuth(phi) / TAU), 0.0)
+        };
+        let theta_i = self.theta_i();
+        self.phi_i().into_iter().flat_map(|phi| theta_i.iter().map(move |theta| view(phi, *theta))).collect()
+    }
+
+    /// Views with their numbers, for each wavelength.
+    fn conditions(&self, views: &[Vector3]) -> Vec<(usize, Vector3, f32)> {
+        let numbered = views.iter().enumerate();
+        numbered.flat_map(|(i, wo)| self.wavelengths.iter().map(move |nm| (i, *wo, *nm))).collect()
     }
 }
 
@@ -111,29 +112,16 @@ fn steps(n: usize, first: f32, last: f32) -> Vec<f32> {
     (0..n).map(|i| first + (last - first) * i as f32 / (n - 1).max(1) as f32).collect()
 }
 
-fn direction(theta: f32, phi: f32) -> Vector3 {
-    let ((sin, cos), (sin_phi, cos_phi)) = (theta.sin_cos(), phi.sin_cos());
-    Vector3::new(sin * cos_phi, sin * sin_phi, cos)
-}
-
-/// The direction at a place of the unit square.
-fn facet(p: Point2) -> Vector3 {
-    direction(FRAC_PI_2 * sqr(p.x), TAU * (p.y - 0.5))
-}
-
-fn map(size: [usize; 2], value: impl Fn(Point2) -> f32) -> Maps {
-    maps(size, std::iter::once(value))
-}
-
 /// Values at nodes, for each condition.
-fn maps<F: Fn(Point2) -> f32>(size: [usize; 2], conditions: impl Iterator<Item = F>) -> Maps {
-    let [nx, ny] = size;
-    let place = |i: usize, n: usize| i as f32 / (n - 1).max(1) as f32;
-    let values = conditions.flat_map(|value| {
-        let nodes = (0..ny).flat_map(move |row| (0..nx).map(move |column| (column, row)));
-        nodes.map(|(column, row)| value(Point2::new(place(column, nx), place(row, ny)))).collect::<Vec<f32>>()
-    });
-    Maps { size, values: values.collect() }
+fn maps<C>(size: [usize; 2], conditions: &[C], value: impl Fn(&C, Point2) -> f32) -> Maps {
+    let [xs, ys] = size.map(|n| steps(n, 0.0, 1.0));
+    let mut values = Vec::new();
+    for condition in conditions {
+        for y in &ys {
+            values.extend(xs.iter().map(|x| value(condition, Point2::new(*x, *y))));
+        }
+    }
+    Maps { size, values }
 }
 
 fn mean_of_wavelengths(spectra: &Maps, n: usize) -> Maps {
@@ -155,7 +143,7 @@ impl Area {
         let places = (0..N_AREA * N_AREA).map(|i| ((i % N_AREA) as f32 + 0.5, (i / N_AREA) as f32 + 0.5));
         let part = |(x, y): (f32, f32)| {
             let p = Point2::new(x / n, y / n);
-            let m = facet(p);
+            let m = of_square(p, 0.0);
             (m, ndf(m) * solid_angle(p.x) / sqr(n))
         };
         Self(places.map(part).collect())
