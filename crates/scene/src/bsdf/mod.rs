@@ -173,6 +173,7 @@ impl BsdfKind {
     fn eval_and_pdf(&self, wo: Vector3, wi: Vector3) -> (Sampled, f32) {
         match self {
             Self::Conductor(bsdf) => bsdf.eval_and_pdf(wo, wi, Lobes::ALL),
+            Self::Hair(bsdf) => bsdf.eval_and_pdf(wo, wi, Lobes::ALL),
             _ => (self.eval(wo, wi, TransportMode::Radiance, Lobes::ALL), self.pdf(wo, wi, Lobes::ALL)),
         }
     }

@@ -19,7 +19,7 @@ pub(super) struct Inclination {
 
 impl Inclination {
     pub(super) fn of(w: Vector3) -> Self {
-        Self { sin: w.x.clamp(-1.0, 1.0), cos: w.y.hypot(w.z).min(1.0) }
+        Self { sin: w.x.clamp(-1.0, 1.0), cos: (sqr(w.y) + sqr(w.z)).sqrt().min(1.0) }
     }
 
     /// With an angle added, given by its sine and cosine; beyond the axis it comes back on the other side.

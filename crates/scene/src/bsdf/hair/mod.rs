@@ -103,15 +103,28 @@ impl Hair {
     }
 
     /// f in 1/sr of the wanted lobes, the same in both modes.
-    #[inline(never)]
     #[must_use]
     pub fn eval(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> Sampled {
+        self.eval_and_pdf(wo, wi, lobes).0
+    }
+
+    /// Density of [`Self::sample`] in 1/sr.
+    #[must_use]
+    pub fn pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> f32 {
+        self.eval_and_pdf(wo, wi, lobes).1
+    }
+
+    /// [`Self::eval`] and [`Self::pdf`].
+    #[inline(never)]
+    #[must_use]
+    pub fn eval_and_pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> (Sampled, f32) {
         if !lobes.contains(lobe(wo, wi)) {
-            return Sampled::ZERO;
+            return (Sampled::ZERO, 0.0);
         }
         let view = self.view(wo);
+        let densities = self.densities(&view, wi);
         // Along the surface itself the cosine is 0, but f is to be a number.
-        view.scattered(self.densities(&view, wi)) / abs_cos(wi).max(1e-12)
+        (view.scattered(densities) / abs_cos(wi).max(1e-12), view.pdf(densities))
     }
 
     /// A direction of one of the wanted lobes. Those of others are drawn too, and dropped.
@@ -138,17 +151,6 @@ impl Hair {
             eta: 1.0,
             roughness: self.alpha(),
         })
-    }
-
-    /// Density of [`Self::sample`] in 1/sr.
-    #[inline(never)]
-    #[must_use]
-    pub fn pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> f32 {
-        if !lobes.contains(lobe(wo, wi)) {
-            return 0.0;
-        }
-        let view = self.view(wo);
-        view.pdf(self.densities(&view, wi))
     }
 
     fn view(&self, wo: Vector3) -> View {
