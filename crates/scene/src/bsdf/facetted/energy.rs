@@ -48,6 +48,7 @@ pub(super) fn square(i: usize) -> f32 {
 }
 
 /// The entry below a place in [0, 1], and the share of the next one.
+#[inline]
 fn place(x: f32) -> (usize, f32) {
     let x = x.clamp(0.0, 1.0) * (N - 1) as f32;
     let i = (x as usize).min(N - 2);
@@ -55,6 +56,7 @@ fn place(x: f32) -> (usize, f32) {
 }
 
 /// The row below an alpha, and the share of the next one. What the narrowest facets lose grows with alpha².
+#[inline]
 fn row(alpha: f32) -> (usize, f32) {
     let (i, share) = place(alpha.sqrt());
     if i > 2 {
@@ -62,6 +64,12 @@ fn row(alpha: f32) -> (usize, f32) {
     }
     let [low, high] = [i, i + 1].map(|i| sqr(square(i)));
     (i, (sqr(alpha) - low) / (high - low))
+}
+
+/// The column below a cosine, and the share of the next one.
+#[inline]
+fn column(cos: f32) -> (usize, f32) {
+    place(cos.max(0.0).sqrt())
 }
 
 impl Table {
@@ -80,9 +88,14 @@ impl Table {
         ((0..STEPS).map(term).sum::<f64>() / STEPS as f64) as f32
     }
 
+    #[inline]
     pub(super) fn at(&self, cos: f32, alpha: f32) -> f32 {
-        let (i, along_alpha) = row(alpha);
-        let (j, along_cos) = place(cos.max(0.0).sqrt());
+        self.between(column(cos), row(alpha))
+    }
+
+    /// The value between entries.
+    #[inline]
+    fn between(&self, (j, along_cos): (usize, f32), (i, along_alpha): (usize, f32)) -> f32 {
         let row = |i: usize| lerp(along_cos, self.values[i][j], self.values[i][j + 1]);
         lerp(along_alpha, row(i), row(i + 1))
     }
@@ -117,6 +130,7 @@ impl EnergyTable {
     }
 
     /// `E(cos, alpha)`, for alpha up to 1.
+    #[inline]
     pub(super) fn albedo(&self, cos: f32, alpha: f32) -> f32 {
         self.albedo.at(cos, alpha)
     }
@@ -126,9 +140,11 @@ impl EnergyTable {
         self.albedo.mean(alpha)
     }
 
-    /// `B(cos, alpha)`: E with facets that reflect `(1 - wo·h)⁵`.
-    pub(super) fn grazing_albedo(&self, cos: f32, alpha: f32) -> f32 {
-        self.grazing.at(cos, alpha) + schlick_weight(cos)
+    /// E, and B: the same with facets that reflect `(1 - wo·h)⁵`.
+    #[inline]
+    pub(super) fn albedos(&self, cos: f32, alpha: f32) -> (f32, f32) {
+        let (column, row) = (column(cos), row(alpha));
+        (self.albedo.between(column, row), self.grazing.between(column, row) + schlick_weight(cos))
     }
 
     /// Cosines `wo·h` that stand for equal parts of what is reflected.

@@ -100,7 +100,7 @@ impl Principled {
     /// `1 - S` of a direction: what the coat lets pass.
     fn passed(&self, cos: f32) -> f32 {
         let table = EnergyTable::of(FacetShape::Ggx);
-        let (e, b) = (table.albedo(cos, self.alpha), table.grazing_albedo(cos, self.alpha));
+        let (e, b) = table.albedos(cos, self.alpha);
         (1.0 - (self.coat_f0 * (e - b) + b + self.coat_later * (1.0 - e))).max(0.0)
     }
 }

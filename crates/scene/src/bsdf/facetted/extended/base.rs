@@ -165,7 +165,7 @@ impl Base {
     /// About what leaves by the diffuse base or through thin glass, for sampling.
     pub(super) fn passed_about(&self, w: Vector3) -> f32 {
         let (table, alpha) = (Self::table(), alpha_along(self.tabulated, w));
-        let (e, b) = (table.albedo(w.z, alpha), table.grazing_albedo(w.z, alpha));
+        let (e, b) = table.albedos(w.z, alpha);
         1.0 - self.specular * (self.f0.min_value() * (e - b) + b)
     }
 
@@ -189,7 +189,7 @@ impl Base {
     /// What all bounces leave to the diffuse base or to thin glass.
     pub(super) fn passed(&self, w: Vector3) -> Sampled {
         let (table, alpha) = (Self::table(), alpha_along(self.tabulated, w));
-        let (e, b) = (table.albedo(w.z, alpha), table.grazing_albedo(w.z, alpha));
+        let (e, b) = table.albedos(w.z, alpha);
         let mut once = self.f0 * (e - b) + Sampled::splat(b);
         if self.film.share > 0.0 {
             // What the film adds to Schlick's fit varies little enough for a few points.

@@ -20,7 +20,6 @@ pub(in crate::bsdf) fn configurations() -> Vec<Configuration> {
     vec![
         row("specular", PrincipledParameters { specular: 0.6, specular_color: color * 2.0, ..white })
             .lossless(),
-        row("ior 0", PrincipledParameters { ior: 0.0, ..white }).lossless(),
         row("brushed plastic", PrincipledParameters { anisotropy: 0.7, roughness: 0.3, ..white }).lossless(),
         row("brushed metal", PrincipledParameters { anisotropy: 0.7, metallic: 1.0, ..white }).lossless(),
         row("coat", PrincipledParameters { clearcoat: 1.0, ..white }).lossless(),
@@ -57,8 +56,7 @@ pub(in crate::bsdf) fn configurations() -> Vec<Configuration> {
         row("solid glass", solid(smooth_glass)).lossless(),
         row("solid rough glass", solid(rough_glass)).lossless().breaking(&[Law::Furnace]),
         row("solid of index 1", solid(PrincipledParameters { ior: 1.0, ..rough_glass })).lossless(),
-        row("everything, thin", everything(color)),
-        row("everything, solid", solid(everything(color))),
+        row("everything", solid(everything(color))),
     ]
 }
 

@@ -51,7 +51,7 @@ impl Coat {
             return 0.0;
         }
         let (table, cos) = (EnergyTable::of(FacetShape::Ggx), self.local(w).z.max(0.0));
-        let (e, b) = (table.albedo(cos, self.alpha), table.grazing_albedo(cos, self.alpha));
+        let (e, b) = table.albedos(cos, self.alpha);
         self.share * (F0 * (e - b) + b)
     }
 
