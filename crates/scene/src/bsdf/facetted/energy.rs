@@ -55,15 +55,24 @@ fn place(x: f32) -> (usize, f32) {
     (i, x - i as f32)
 }
 
-/// The row below an alpha, and the share of the next one. What the narrowest facets lose grows with alpha².
-#[inline]
-fn row(alpha: f32) -> (usize, f32) {
-    let (i, share) = place(alpha.sqrt());
-    if i > 2 {
-        return (i, share);
+/// The row below an alpha, and the share of the next one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Row {
+    below: u32,
+    share: f32,
+}
+
+impl Row {
+    /// What the narrowest facets lose grows with alpha².
+    #[inline]
+    pub(super) fn of(alpha: f32) -> Self {
+        let (i, share) = place(alpha.sqrt());
+        if i > 2 {
+            return Self { below: i as u32, share };
+        }
+        let [low, high] = [i, i + 1].map(|i| sqr(square(i)));
+        Self { below: i as u32, share: (sqr(alpha) - low) / (high - low) }
     }
-    let [low, high] = [i, i + 1].map(|i| sqr(square(i)));
-    (i, (sqr(alpha) - low) / (high - low))
 }
 
 /// The column below a cosine, and the share of the next one.
@@ -90,19 +99,20 @@ impl Table {
 
     #[inline]
     pub(super) fn at(&self, cos: f32, alpha: f32) -> f32 {
-        self.between(column(cos), row(alpha))
+        self.between(column(cos), Row::of(alpha))
     }
 
     /// The value between entries.
     #[inline]
-    fn between(&self, (j, along_cos): (usize, f32), (i, along_alpha): (usize, f32)) -> f32 {
-        let row = |i: usize| lerp(along_cos, self.values[i][j], self.values[i][j + 1]);
-        lerp(along_alpha, row(i), row(i + 1))
+    fn between(&self, (j, along_cos): (usize, f32), row: Row) -> f32 {
+        let i = row.below as usize;
+        let at = |i: usize| lerp(along_cos, self.values[i][j], self.values[i][j + 1]);
+        lerp(row.share, at(i), at(i + 1))
     }
 
     fn mean(&self, alpha: f32) -> f32 {
-        let (i, share) = row(alpha);
-        lerp(share, self.means[i], self.means[i + 1])
+        let Row { below, share } = Row::of(alpha);
+        lerp(share, self.means[below as usize], self.means[below as usize + 1])
     }
 }
 
@@ -143,8 +153,20 @@ impl EnergyTable {
     /// E, and B: the same with facets that reflect `(1 - wo·h)⁵`.
     #[inline]
     pub(super) fn albedos(&self, cos: f32, alpha: f32) -> (f32, f32) {
-        let (column, row) = (column(cos), row(alpha));
+        self.albedos_in(cos, Row::of(alpha))
+    }
+
+    /// The same, of a row.
+    #[inline]
+    pub(super) fn albedos_in(&self, cos: f32, row: Row) -> (f32, f32) {
+        let column = column(cos);
         (self.albedo.between(column, row), self.grazing.between(column, row) + schlick_weight(cos))
+    }
+
+    /// E of a row.
+    #[inline]
+    pub(super) fn albedo_in(&self, cos: f32, row: Row) -> f32 {
+        self.albedo.between(column(cos), row)
     }
 
     /// Cosines `wo·h` that stand for equal parts of what is reflected.

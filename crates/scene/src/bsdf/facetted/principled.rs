@@ -17,7 +17,7 @@ use etendue_math::{Point2, Vector3, sqr, warp};
 use etendue_spectrum::Sampled;
 
 use super::FacetShape;
-use super::energy::EnergyTable;
+use super::energy::{EnergyTable, Row};
 use crate::bsdf::classic::lobed::{Lobed, Shares};
 use crate::bsdf::fresnel::{reflect, schlick_weight};
 use crate::bsdf::microfacet::Microfacets;
@@ -26,8 +26,8 @@ use crate::bsdf::microfacet::Microfacets;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Principled {
     microfacets: Microfacets,
-    /// Alpha of the tables, which widening for rough paths does not change.
-    alpha: f32,
+    /// Alpha in the tables, which widening for rough paths does not change.
+    row: Row,
     /// Reflectance of the coat along the normal.
     coat_f0: f32,
     /// `F_ms` of the coat: later bounces.
@@ -68,7 +68,7 @@ impl Principled {
             coat_f0 * (mean - table.grazing_mean(alpha)) + table.grazing_mean(alpha) + coat_later * lost;
         Self {
             microfacets: Microfacets::new(alpha, alpha),
-            alpha,
+            row: Row::of(alpha),
             coat_f0,
             coat_later,
             f0: base * metallic + Sampled::splat((1.0 - metallic) * coat_f0),
@@ -94,13 +94,13 @@ impl Principled {
 
     /// `1 - E` of a direction.
     fn lost(&self, cos: f32) -> f32 {
-        1.0 - EnergyTable::of(FacetShape::Ggx).albedo(cos, self.alpha)
+        1.0 - EnergyTable::of(FacetShape::Ggx).albedo_in(cos, self.row)
     }
 
     /// `1 - S` of a direction: what the coat lets pass.
     fn passed(&self, cos: f32) -> f32 {
         let table = EnergyTable::of(FacetShape::Ggx);
-        let (e, b) = table.albedos(cos, self.alpha);
+        let (e, b) = table.albedos_in(cos, self.row);
         (1.0 - (self.coat_f0 * (e - b) + b + self.coat_later * (1.0 - e))).max(0.0)
     }
 }
