@@ -17,6 +17,7 @@
 
 use std::f32::consts::{FRAC_1_PI, PI};
 
+use etendue_math::warp::{sample_cosine_hemisphere, sample_uniform_hemisphere, uniform_hemisphere_pdf};
 use etendue_math::{Frame, Point2, Rng, Vector3, hash64, sqr};
 use etendue_spectrum::Sampled;
 
@@ -27,6 +28,9 @@ use super::fresnel::{fresnel_conductor, fresnel_dielectric, refract};
 use super::local::{abs_cos, same_hemisphere};
 use super::microfacet::Microfacets;
 use super::{BsdfSample, Lobes, TransportMode};
+
+/// The share of the density of light from below the coat that is uniform, so that it is nowhere near 0.
+const UNIFORM_SHARE: f32 = 0.1;
 
 /// What lies under the coat.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -389,6 +393,42 @@ impl Layered {
         BsdfSample { wi: walk.w, weight: walk.beta, pdf_w: 0.0, pmf: 0.0, lobe, eta: 1.0, roughness }
     }
 
+    /// True if [`Self::sample_by_density`] samples: if the coat is smooth, and all light from below it is spread widely.
+    /// Under a rough coat estimates of f have no bound that would keep the weights small.
+    #[must_use]
+    pub(super) fn has_density(&self) -> bool {
+        !self.coat.lobes().has_non_specular() && matches!(self.base, Base::Diffuse(_))
+    }
+
+    /// A direction with just the density that [`Self::pdf`] claims for all lobes, of a surface that [has
+    /// one](Self::has_density). Its weight is an estimate, and varies more than that of [`Self::sample`].
+    #[must_use]
+    pub(super) fn sample_by_density(
+        &self,
+        wo: Vector3,
+        u_component: f32,
+        u: Point2,
+        mode: TransportMode,
+    ) -> Option<BsdfSample> {
+        let side = 1.0_f32.copysign(wo.z);
+        let wo = wo * side;
+        let p_coat = fresnel_dielectric(wo.z, self.coat.eta);
+        if u_component < p_coat {
+            let sample = self.coat.sample(wo, u_component / p_coat, u, mode, Lobes::REFLECT)?;
+            let (weight, pmf) = (sample.weight / p_coat, sample.pmf * p_coat);
+            return Some(BsdfSample { wi: sample.wi * side, weight, pmf, ..sample });
+        }
+        let is_uniform = (u_component - p_coat) < UNIFORM_SHARE * (1.0 - p_coat);
+        let wi = if is_uniform { sample_uniform_hemisphere(u) } else { sample_cosine_hemisphere(u) };
+        let pdf_w = self.pdf(wo, wi, Lobes::ALL);
+        if wi.z <= 0.0 || pdf_w <= 0.0 {
+            return None;
+        }
+        let weight = self.eval(wo, wi, mode, Lobes::ALL) * (wi.z / pdf_w);
+        let lobe = Lobes::DIFFUSE_REFLECT;
+        Some(BsdfSample { wi: wi * side, weight, pdf_w, pmf: 0.0, lobe, eta: 1.0, roughness: 1.0 })
+    }
+
     /// A likeness of the density of [`Self::sample`] in 1/sr: see the module's text.
     #[must_use]
     pub fn pdf(&self, wo: Vector3, wi: Vector3, lobes: Lobes) -> f32 {
@@ -405,13 +445,13 @@ impl Layered {
         pdf_coat + p_walk * self.walk_pdf(wo, wi)
     }
 
-    /// Density of directions of light that has been below the coat: a tenth of it is uniform.
+    /// Density of directions of light that has been below the coat.
     fn walk_pdf(&self, wo: Vector3, wi: Vector3) -> f32 {
         let likeness = match (self.base, self.rough_walk_lobe().is_diffuse()) {
             (Base::Conductor(base), false) => self.coated_conductor_pdf(&base, wo, wi),
             _ => wi.z * FRAC_1_PI,
         };
-        0.9 * likeness + 0.1 * 0.5 * FRAC_1_PI
+        (1.0 - UNIFORM_SHARE) * likeness + UNIFORM_SHARE * uniform_hemisphere_pdf()
     }
 
     /// Density of entering through a smooth coat, one reflection on a base as rough as both together, and leaving.

@@ -149,6 +149,33 @@ impl BsdfKind {
         }
     }
 
+    /// True if [`Self::sample_by_density`] samples with just the density that [`Self::pdf`] claims.
+    #[inline]
+    #[must_use]
+    pub fn has_density(&self) -> bool {
+        match self {
+            Self::Layered(bsdf) => bsdf.has_density(),
+            _ => true,
+        }
+    }
+
+    /// As [`Self::sample`] among all lobes, but with just the density that [`Self::pdf`] claims, for methods that divide by the
+    /// density of what another path has found.
+    #[inline]
+    #[must_use]
+    pub fn sample_by_density(
+        &self,
+        wo: Vector3,
+        u_component: f32,
+        u: Point2,
+        mode: TransportMode,
+    ) -> Option<BsdfSample> {
+        match self {
+            Self::Layered(bsdf) => bsdf.sample_by_density(wo, u_component, u, mode),
+            _ => self.sample(wo, u_component, u, mode, Lobes::ALL),
+        }
+    }
+
     /// Density of [`Self::sample`] in 1/sr.
     #[inline]
     #[must_use]
@@ -353,6 +380,19 @@ impl Bsdf {
             sample.weight *= self.shading_normal_correction(wo, sample.wi);
         }
         (!sample.weight.is_black()).then_some(sample)
+    }
+
+    /// As [`Self::sample`] in radiance mode among all lobes, with just the density that [`Self::pdf`] claims, where the model
+    /// [has one](BsdfKind::has_density). The weight may be black.
+    #[inline]
+    #[must_use]
+    pub fn sample_by_density(&self, wo: Vector3, u_component: f32, u: Point2) -> Option<BsdfSample> {
+        let local_o = self.frame.to_local(wo);
+        if local_o.z == 0.0 {
+            return None;
+        }
+        let sample = self.kind.sample_by_density(local_o, u_component, u, TransportMode::Radiance)?;
+        Some(BsdfSample { wi: self.frame.to_world(sample.wi), ..sample })
     }
 
     /// Density of [`Self::sample`] in 1/sr, the same in both modes. 0 for Dirac lobes.

@@ -13,7 +13,7 @@ mod tabulated;
 use std::f64::consts::TAU;
 
 use etendue_math::statistics::{
-    Moments, chi_square_test, integrate_sphere, mean_test, sidak, sphere_chi_square,
+    Moments, chi_square_test, integrate_sphere, mean_test, means_agree, sidak, sphere_chi_square,
 };
 use etendue_math::{Normal3, Point2, Rng, Vector3, hash64};
 use etendue_spectrum::Sampled;

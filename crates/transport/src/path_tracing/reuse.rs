@@ -12,7 +12,7 @@
 //! lobes. Paths share if they have scattered as often before x, so that `maxdepth` means the same to all.
 
 use etendue_math::Vector3;
-use etendue_scene::bsdf::{Bsdf, Lobes, TransportMode};
+use etendue_scene::bsdf::{Bsdf, BsdfSample, Lobes, TransportMode};
 use etendue_scene::light::LightPoint;
 use etendue_scene::medium::MediumId;
 use etendue_scene::scene::Surface;
@@ -22,6 +22,9 @@ use super::PathSettings;
 use super::settings::MAX_REUSE;
 use super::walk::Walk;
 use crate::path::camera_pass::{CameraPath, Follow, FollowedPath, Tracer};
+
+/// What a path carries from the surface that it finds counts no less than this in roulette, for others may carry more.
+const LEAST_BRIGHTNESS: f32 = 0.1;
 
 /// Most paths of a group.
 const MAX_PATHS: usize = (MAX_REUSE * MAX_REUSE) as usize;
@@ -92,9 +95,15 @@ impl Follow for Reuse<'_> {
     }
 }
 
-/// Sharing takes lobes that other directions meet, and their true density: random models know only a likeness of theirs.
+/// Sharing takes lobes that other directions meet, and samples of a known density.
 fn can_share(bsdf: &Bsdf) -> bool {
-    bsdf.lobes().has_non_specular() && !bsdf.kind().is_stochastic()
+    bsdf.lobes().has_non_specular() && bsdf.kind().has_density()
+}
+
+/// A direction from a surface for the path to share. It goes on even if the path itself sees nothing of what it finds.
+fn sample_to_share(surface: &Surface, bsdf: &Bsdf, path: &mut CameraPath<'_, '_>) -> Option<BsdfSample> {
+    let (u_component, u) = (path.sampler.next_1d(), path.sampler.next_2d());
+    bsdf.sample_by_density(surface.wo, u_component, u)
 }
 
 /// Goes on from the first surface that scatters widely.
@@ -129,9 +138,10 @@ fn find_source(
     path: &mut CameraPath<'_, '_>,
 ) -> (Sampled, Option<Source>) {
     let lambda = *path.lambda;
-    let Some(sample) = walk.leave(tracer.scene, surface, bsdf, walks_per_light_sample, path) else {
+    let Some(sample) = sample_to_share(surface, bsdf, path) else {
         return (walk.radiance, None);
     };
+    walk.leave(tracer.scene, surface, &sample, walks_per_light_sample, path.layers);
     if sample.is_specular() {
         return (if walk.survives_roulette(path) { walk.follow(tracer, path) } else { walk.radiance }, None);
     }
@@ -155,15 +165,20 @@ fn find_source(
     );
     let mut indirect = (y.wo, Sampled::ZERO);
     let mut own = walk.radiance;
-    if let Some(sample) = walk.leave(tracer.scene, &y, &y_bsdf, 1.0, path) {
-        if sample.is_specular() || !can_share(&y_bsdf) {
+    if !can_share(&y_bsdf) {
+        if walk.goes_on(tracer.scene, &y, &y_bsdf, 1.0, path) {
+            own = walk.follow(tracer, path);
+        }
+    } else if let Some(sample) = sample_to_share(&y, &y_bsdf, path) {
+        walk.leave(tracer.scene, &y, &sample, 1.0, path.layers);
+        if sample.is_specular() {
             if walk.survives_roulette(path) {
                 own = walk.follow(tracer, path);
             }
         } else {
             let cos_per_pdf = y_bsdf.abs_cos(sample.wi) / sample.pdf_w;
             // Roulette still sees the throughput from the camera.
-            walk.roulette_scale *= walk.beta.max_value() / cos_per_pdf;
+            walk.roulette_scale *= walk.beta.max_value().max(LEAST_BRIGHTNESS) / cos_per_pdf;
             walk.beta = Sampled::splat(cos_per_pdf);
             walk.radiance = Sampled::ZERO;
             if walk.survives_roulette(path) {

@@ -244,7 +244,7 @@ impl<'s> Walk<'s> {
 
     /// Chooses where the path goes from a surface; `false` if it ends there.
     #[inline]
-    fn goes_on(
+    pub(super) fn goes_on(
         &mut self,
         scene: &Scene,
         surface: &Surface,
@@ -252,25 +252,11 @@ impl<'s> Walk<'s> {
         walks_per_light_sample: f32,
         path: &mut CameraPath<'_, '_>,
     ) -> bool {
-        self.leave(scene, surface, bsdf, walks_per_light_sample, path).is_some()
-            && self.survives_roulette(path)
-    }
-
-    /// Leaves a surface in a random direction; `None` if the path ends there.
-    #[inline]
-    pub(super) fn leave(
-        &mut self,
-        scene: &Scene,
-        surface: &Surface,
-        bsdf: &Bsdf,
-        walks_per_light_sample: f32,
-        path: &mut CameraPath<'_, '_>,
-    ) -> Option<BsdfSample> {
         let (u_component, u) = (path.sampler.next_1d(), path.sampler.next_2d());
-        let sample = bsdf.sample(surface.wo, u_component, u, TransportMode::Radiance, Lobes::ALL)?;
-        self.medium = scene.medium_towards(surface, sample.wi, self.medium);
-        self.scatter(surface, &sample, walks_per_light_sample, path.layers);
-        Some(sample)
+        let sample = bsdf.sample(surface.wo, u_component, u, TransportMode::Radiance, Lobes::ALL);
+        let Some(sample) = sample else { return false };
+        self.leave(scene, surface, &sample, walks_per_light_sample, path.layers);
+        self.survives_roulette(path)
     }
 
     /// Weight of light that scattering found, against the same light sampled from the last vertex.
@@ -380,13 +366,17 @@ impl<'s> Walk<'s> {
         path.layers.emit_through(Event::Diffuse, diffuse);
     }
 
-    fn scatter(
+    /// Leaves a surface in a sampled direction.
+    #[inline]
+    pub(super) fn leave(
         &mut self,
+        scene: &Scene,
         surface: &Surface,
         sample: &BsdfSample,
         walks_per_light_sample: f32,
         layers: &mut LayerRecorder<'_>,
     ) {
+        self.medium = scene.medium_towards(surface, sample.wi, self.medium);
         self.beta *= sample.weight;
         self.roulette_scale *= sample.eta * sample.eta;
         self.depth += 1;

@@ -46,6 +46,23 @@ fn glossy_surfaces_share_without_bias() {
     expect_same("glossy balls", &objects.concat(), "\"integer maxdepth\" 9", 250, 0.03);
 }
 
+/// Coats whose scattering is known by random walks alone, smooth ones, which share, and rough ones, which do not.
+#[test]
+fn coated_surfaces_share_without_bias() {
+    let coat = |roughness: f64, corners: &str| {
+        format!(
+            "Material \"coateddiffuse\" \"rgb reflectance\" [0.7 0.7 0.7] \"float roughness\" {roughness}
+            Shape \"bilinearmesh\" \"point3 P\" [{corners}]\n"
+        )
+    };
+    let inner_walls = [
+        coat(0.0, "-0.99 -0.99 -1  0.99 -0.99 -1  -0.99 -0.99 0.99  0.99 -0.99 0.99"),
+        coat(0.3, "-0.99 -0.99 0.99  0.99 -0.99 0.99  -0.99 0.99 0.99  0.99 0.99 0.99"),
+        coat(0.1, "-0.99 -0.99 -1  -0.99 -0.99 0.99  -0.99 0.99 -1  -0.99 0.99 0.99"),
+    ];
+    expect_same("coated walls", &inner_walls.concat(), "\"integer maxdepth\" 5", 250, 0.03);
+}
+
 /// Glass that absorbs, rough and smooth, and glass that disperses: what paths share crosses media, and may keep one
 /// wavelength of four.
 #[test]

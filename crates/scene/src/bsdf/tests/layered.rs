@@ -74,6 +74,38 @@ fn density_resembles_the_samples() {
     }
 }
 
+/// Where a coated surface has a density, it samples by it, and finds the same reflectance as its walks do.
+#[test]
+fn samples_by_density_have_it() {
+    for (index, row) in stochastic_rows().into_iter().filter(|row| row.kind.has_density()).enumerate() {
+        for wo in directions(&row.kind) {
+            let by_density = |rng: &mut Rng| {
+                let u = Point2::new(rng.next_f32(), rng.next_f32());
+                row.kind.sample_by_density(wo, rng.next_f32(), u, TransportMode::Radiance)
+            };
+            let seed = seed("by density", index);
+            sphere_chi_square(
+                N_SAMPLES,
+                seed,
+                |rng| by_density(rng).filter(|sample| !sample.is_specular()).map(|sample| sample.wi),
+                |wi| row.kind.pdf(wo, wi, Lobes::ALL),
+                significance(),
+            )
+            .unwrap_or_else(|error| panic!("{}, {wo:?}: {error}", row.name));
+            let mut rng = Rng::new(seed, 1);
+            let mut albedo = |draw: &dyn Fn(&mut Rng) -> Option<BsdfSample>| -> Moments {
+                (0..20_000)
+                    .map(|_| draw(&mut rng).map_or(0.0, |sample| f64::from(sample.weight[0])))
+                    .collect()
+            };
+            let walks = albedo(&|rng| draw(&row.kind, wo, TransportMode::Radiance, Lobes::ALL, rng));
+            let density = albedo(&by_density);
+            means_agree(&walks, &density, significance())
+                .unwrap_or_else(|error| panic!("albedo of {}, {wo:?}: {error}", row.name));
+        }
+    }
+}
+
 /// A smooth coat over a diffuse base has a closed form: light enters, and what the coat reflects back inside is
 /// diffused again, f = T(wo) T(wi) / (pi eta²) · ρ t / (1 - ρ r), with the internal diffuse reflectance r of the coat.
 /// Absorption by the medium is made negligible.
