@@ -8,8 +8,9 @@
 //! with which x_k finds y, zero if it does not see it. Unbiased, and no share exceeds what its own path would have brought.
 //! Neighbours that see other surfaces lend little and take little, by those densities.
 //!
-//! What only the path itself can bring stays its own: emission of y, which x weighs against its own light samples, and Dirac
-//! lobes. Paths share if they have scattered as often before x, so that `maxdepth` means the same to all.
+//! What only the path itself can bring stays its own: emission of y, which x weighs against its own light samples, Dirac
+//! lobes, and all from a y of narrow lobes, whose samples for one x would be rare and bright for another. A y is shared among
+//! those who see it from the same side. Paths share if they have scattered as often before x, so that `maxdepth` means the same to all.
 
 use etendue_math::Vector3;
 use etendue_scene::bsdf::{Bsdf, BsdfSample, Lobes, TransportMode};
@@ -25,6 +26,9 @@ use crate::path::camera_pass::{CameraPath, Follow, FollowedPath, Tracer};
 
 /// What a path carries from the surface that it finds counts no less than this in roulette, for others may carry more.
 const LEAST_BRIGHTNESS: f32 = 0.1;
+
+/// Lobes of facets narrower than this are not shared.
+const NARROW_ALPHA: f32 = 0.3;
 
 /// Most paths of a group.
 const MAX_PATHS: usize = (MAX_REUSE * MAX_REUSE) as usize;
@@ -54,6 +58,8 @@ pub(super) struct Gatherer {
 struct Source {
     point: LightPoint,
     bsdf: Bsdf,
+    /// The side that is seen, by the sign of its cosine.
+    side: f32,
     /// Light that arrives: its direction, and radiance times cosine per density.
     incident: [(Vector3, Sampled); 2],
     /// How the path itself came here.
@@ -106,6 +112,11 @@ fn sample_to_share(surface: &Surface, bsdf: &Bsdf, path: &mut CameraPath<'_, '_>
     bsdf.sample_by_density(surface.wo, u_component, u)
 }
 
+/// True if what a surface scatters one way may be found by samples for another.
+fn is_source(bsdf: &Bsdf) -> bool {
+    can_share(bsdf) && !(bsdf.lobes().is_glossy() && bsdf.glossy_roughness() < NARROW_ALPHA)
+}
+
 /// Goes on from the first surface that scatters widely.
 fn gather(
     mut walk: Walk<'_>,
@@ -148,10 +159,13 @@ fn find_source(
     let Some((y, y_bsdf)) = walk.arrive(tracer, path) else {
         return (walk.radiance, None);
     };
-    path.sampler.start_vertex();
-    if !y_bsdf.lobes().has_non_specular() {
-        return (walk.finish(tracer, &y, &y_bsdf, 1.0, path), None);
+    if !is_source(&y_bsdf) {
+        return (
+            if walk.visit(tracer, &y, &y_bsdf, path) { walk.follow(tracer, path) } else { walk.radiance },
+            None,
+        );
     }
+    path.sampler.start_vertex();
     // Light arriving at y does not depend on the way from the camera.
     let mut alone = walk;
     alone.beta = Sampled::ONE;
@@ -165,11 +179,7 @@ fn find_source(
     );
     let mut indirect = (y.wo, Sampled::ZERO);
     let mut own = walk.radiance;
-    if !can_share(&y_bsdf) {
-        if walk.goes_on(tracer.scene, &y, &y_bsdf, 1.0, path) {
-            own = walk.follow(tracer, path);
-        }
-    } else if let Some(sample) = sample_to_share(&y, &y_bsdf, path) {
+    if let Some(sample) = sample_to_share(&y, &y_bsdf, path) {
         walk.leave(tracer.scene, &y, &sample, 1.0, path.layers);
         if sample.is_specular() {
             if walk.survives_roulette(path) {
@@ -189,6 +199,7 @@ fn find_source(
     let source = Source {
         point: LightPoint { p: y.point.p, p_error: y.point.p_error, n: Some(y.point.ng), uv: y.point.uv },
         bsdf: y_bsdf,
+        side: y.wo.dot_normal(y_bsdf.ns()).signum(),
         incident: [direct, indirect],
         own: Technique { f_cos: sample.weight * sample.pdf_w, pdf_w: sample.pdf_w },
     };
@@ -242,6 +253,9 @@ fn connect(
     let distance_squared = way.length_squared();
     let distance = distance_squared.sqrt();
     let w = way / distance;
+    if -w.dot_normal(source.bsdf.ns()) * source.side <= 0.0 {
+        return None;
+    }
     let Technique { f_cos, pdf_w } = own.unwrap_or_else(|| {
         let (f_cos, pdf_w) = bsdf.eval_cos_and_pdf(surface.wo, w);
         Technique { f_cos, pdf_w }

@@ -89,6 +89,27 @@ fn holes_and_motion_share_without_bias() {
     expect_same("veil and moving ball", &objects, "\"integer maxdepth\" 4", 250, 0.03);
 }
 
+/// A sheet that is lit from above and from below, seen edge on where it meets a dark wall: pixels of one group stand above and
+/// below it, and find its two sides, which they must not mix up.
+#[test]
+fn both_sides_of_a_sheet_are_kept_apart() {
+    let sheet = "Material \"diffuse\" \"rgb reflectance\" [0.9 0.9 0.9]
+        Shape \"bilinearmesh\" \"point3 P\" [-0.98 0 -0.98  0.98 0 -0.98  -0.98 0 0.98  0.98 0 0.98]\n";
+    let wall = "Material \"diffuse\" \"rgb reflectance\" [0.5 0.5 0.5]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  1 -1 1  -1 1 1  1 1 1]\n";
+    let lamps =
+        "LightSource \"point\" \"point3 from\" [0 1 0.2] LightSource \"point\" \"point3 from\" [0 -1 0.2]";
+    let world = [sheet, wall, lamps].concat();
+    let render = |reuse: u32| {
+        let integrator = format!("\"integer maxdepth\" 2 \"integer reuse\" {reuse}");
+        let camera = "LookAt 0 0 -3.4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 4";
+        let setup =
+            Setup { size: [18, 18], integrator: &integrator, camera, world: &world, ..Setup::default() };
+        block_moments(&setup.scene(&format!("sheet, sides of {reuse}")), 400, 3)
+    };
+    expect_same_image("sheet", &render(1), &render(4), 0.02);
+}
+
 /// More samples of the lights where paths gather.
 #[test]
 fn light_samples_are_weighted_against_shared_paths() {
