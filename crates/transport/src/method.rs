@@ -90,7 +90,7 @@ pub fn method(entity: &Entity, expressions: PathExpressions) -> (Option<Box<dyn 
         return (None, context.diagnostics);
     }
     let mut p = Parameters::new(entity, &mut context);
-    let mut settings = PathSettings::from_parameters(&mut p);
+    let settings = PathSettings::from_parameters(&mut p);
     let span_of_reuse = p.span_of("reuse");
     for foreign in FOREIGN_PARAMETERS {
         p.ignore(foreign);
@@ -104,7 +104,6 @@ pub fn method(entity: &Entity, expressions: PathExpressions) -> (Option<Box<dyn 
         return (None, context.diagnostics);
     }
     if settings.reuse > 1 && !expressions.is_empty() {
-        settings.reuse = 1;
         let message = "layers by path expression need paths of their own: \"reuse\" is taken as 1";
         context.diagnostics.warning(span_of_reuse, message);
     }

@@ -23,6 +23,8 @@ use crate::path::camera_pass::{CameraPass, CameraPath, Follow, FollowedPath, Tra
 
 pub use settings::{LightStrategy, PathSettings};
 
+use self::settings::MAX_REUSE;
+
 /// The path tracer.
 #[derive(Clone, Debug)]
 pub struct PathTracer {
@@ -33,9 +35,11 @@ pub struct PathTracer {
 }
 
 impl PathTracer {
-    /// A path tracer that fills the film's layers by these expressions, in their order.
+    /// A path tracer that fills the film's layers by these expressions, in their order. Where there are any, paths are not
+    /// shared.
     #[must_use]
-    pub const fn new(settings: PathSettings, expressions: PathExpressions) -> Self {
+    pub fn new(mut settings: PathSettings, expressions: PathExpressions) -> Self {
+        settings.reuse = if expressions.is_empty() { settings.reuse.clamp(1, MAX_REUSE) } else { 1 };
         Self { settings, expressions, tiles: Vec::new() }
     }
 }

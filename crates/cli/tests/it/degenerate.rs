@@ -212,5 +212,8 @@ fn materials() {
     check("Material \"conductor\" \"float k\" -2", &["\"k\" is negative; it is taken as its absolute value"]);
     let grows = "Material \"dielectric\" \"spectrum absorption\" [ 400 -3 700 1 ]";
     check(grows, &["negative absorption is taken as 0"]);
-    check("Material \"phong\" \"float ambient\" -1", &["a negative ambient term is taken as 0"]);
+    check(
+        "Material \"phong\" \"float ambient\" -1",
+        &["an ambient term that is negative at some wavelength is taken as 0"],
+    );
 }

@@ -1,4 +1,4 @@
-//! A tree over lights with places, four children to a node; lights at infinity stand apart
+//! A tree over lights with places, four children to a node; lights at infinity stand apart, and so do all where they are few
 //! (Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting").
 //!
 //! From the root, a child is taken with probability in proportion to its importance for the point to be lit; the
@@ -124,10 +124,10 @@ impl LightTree {
         if let Some(id) = self.infinite.get(group) {
             return Some((*id, 1.0));
         }
-        match self.few.get(group - self.infinite.len()) {
-            Some(id) => Some((*id, 1.0)),
-            None => self.descend(reference, u),
+        if self.has_choice() {
+            return self.descend(reference, u);
         }
+        self.few.get(group - self.infinite.len()).map(|id| (*id, 1.0))
     }
 
     fn descend(&self, reference: &Reference, mut u: f32) -> Option<(LightId, f32)> {

@@ -286,7 +286,7 @@ impl PrincipledExtensions {
     /// The index of refraction. Where a solid disperses light, the first wavelength counts for all.
     fn index(&self, transmission: f32, lambda: &mut Wavelengths) -> f32 {
         let ior = self.base.ior;
-        if self.dispersion == 0.0 || transmission == 0.0 || self.interface.is_none() {
+        if self.dispersion == 0.0 || transmission == 0.0 || ior == 0.0 || self.interface.is_none() {
             return ior;
         }
         lambda.terminate_secondary();

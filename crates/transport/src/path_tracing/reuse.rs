@@ -5,12 +5,12 @@
 //! where it goes on as every path. What y scatters is worth a whole path; to connect it with the x of another path costs a
 //! shadow ray. So each x gathers from the y of all: with the balance heuristic, as samples of one integral over surfaces,
 //! `L(x_i) = sum over j of f_i |cos_i| G V L(y_j) / sum over k of p_k(y_j)`, where `p_k(y)` is the density per square metre
-//! with which x_k finds y, zero if it does not see it. Unbiased, and no share exceeds what its own path would have brought.
-//! Neighbours that see other surfaces lend little and take little, by those densities.
+//! with which x_k finds y, zero if it does not see it. Unbiased, and of a diffuse y no share exceeds what its own path would
+//! have brought. Neighbours that see other surfaces lend little and take little, by those densities.
 //!
 //! What only the path itself can bring stays its own: emission of y, which x weighs against its own light samples, Dirac
-//! lobes, and all from a y of narrow lobes, whose samples for one x would be rare and bright for another. A y is shared among
-//! those who see it from the same side. Paths share if they have scattered as often before x, so that `maxdepth` means the same to all.
+//! lobes, all from a y of narrow lobes alone, and what scatters to a y without a known density. A y is shared among those who
+//! see it from the same side. Paths share if they have scattered as often before x, so that `maxdepth` means the same to all.
 
 use etendue_math::Vector3;
 use etendue_scene::bsdf::{Bsdf, BsdfSample, Lobes, TransportMode};
@@ -28,7 +28,7 @@ use crate::path::camera_pass::{CameraPath, Follow, FollowedPath, Tracer};
 const LEAST_BRIGHTNESS: f32 = 0.1;
 
 /// Lobes of facets narrower than this are not shared.
-const NARROW_ALPHA: f32 = 0.3;
+const NARROW_ALPHA: f32 = 0.1;
 
 /// Most paths of a group.
 const MAX_PATHS: usize = (MAX_REUSE * MAX_REUSE) as usize;
@@ -80,8 +80,9 @@ impl Follow for Reuse<'_> {
 
     fn follow(&self, tracer: &Tracer<'_>, path: &mut CameraPath<'_, '_>) -> (Sampled, Self::Left) {
         let mut walk = Walk::new(self.settings, path);
+        let lambda = *path.lambda;
         while let Some((surface, bsdf)) = walk.arrive(tracer, path) {
-            if !walk.has_scattered_widely && can_share(&bsdf) && !path.lambda.secondary_terminated() {
+            if !walk.has_scattered_widely && can_share(&bsdf) && *path.lambda == lambda {
                 return gather(walk, tracer, surface, bsdf, path);
             }
             if !walk.visit(tracer, &surface, &bsdf, path) {
@@ -112,9 +113,11 @@ fn sample_to_share(surface: &Surface, bsdf: &Bsdf, path: &mut CameraPath<'_, '_>
     bsdf.sample_by_density(surface.wo, u_component, u)
 }
 
-/// True if what a surface scatters one way may be found by samples for another.
+/// True if what a surface scatters one way may be found by samples for another: those for one of two narrow lobes are rare and
+/// bright in the other.
 fn is_source(bsdf: &Bsdf) -> bool {
-    can_share(bsdf) && !(bsdf.lobes().is_glossy() && bsdf.glossy_roughness() < NARROW_ALPHA)
+    let lobes = bsdf.lobes();
+    lobes.is_diffuse() || lobes.is_glossy() && bsdf.glossy_roughness() >= NARROW_ALPHA
 }
 
 /// Goes on from the first surface that scatters widely.
@@ -179,7 +182,11 @@ fn find_source(
     );
     let mut indirect = (y.wo, Sampled::ZERO);
     let mut own = walk.radiance;
-    if let Some(sample) = sample_to_share(&y, &y_bsdf, path) {
+    if !can_share(&y_bsdf) {
+        if walk.goes_on(tracer.scene, &y, &y_bsdf, 1.0, path) {
+            own = walk.follow(tracer, path);
+        }
+    } else if let Some(sample) = sample_to_share(&y, &y_bsdf, path) {
         walk.leave(tracer.scene, &y, &sample, 1.0, path.layers);
         if sample.is_specular() {
             if walk.survives_roulette(path) {

@@ -136,16 +136,13 @@ fn sound(field: &'static str, maps: &Maps, n: usize) -> Result<(), MeasuredFault
 
 fn symmetry(phi_i: &[f32]) -> Result<Symmetry, MeasuredFault> {
     let &[first, _, .., last] = phi_i else { return Ok(Symmetry::Isotropic) };
-    if phi_i.len() == 2 {
-        return Ok(Symmetry::Isotropic);
-    }
-    let parts = TAU / (last - first);
+    let parts = if (first + PI).abs() < 0.1 { TAU / (last - first) } else { f32::NAN };
     match parts.round() {
         1.0 => Ok(Symmetry::None),
-        2.0 if (first + PI).abs() < 0.1 => Ok(Symmetry::Turned),
-        4.0 if (first + PI).abs() < 0.1 => Ok(Symmetry::Mirrored),
+        2.0 => Ok(Symmetry::Turned),
+        4.0 => Ok(Symmetry::Mirrored),
         _ => {
-            let why = "should go all around, or a half or a quarter from -180°".to_owned();
+            let why = "should go all around, or a half or a quarter, from -180°".to_owned();
             Err(MeasuredFault { field: "phi_i", why })
         }
     }

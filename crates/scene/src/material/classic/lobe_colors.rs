@@ -44,9 +44,10 @@ impl LobeColors {
     /// The ambient term, in the unit of lights.
     pub(super) fn ambient(p: &mut Parameters<'_, '_>) -> Option<Spectrum> {
         let spectrum = p.spectrum("ambient", SpectrumRole::Illuminant)?;
-        if matches!(spectrum, Spectrum::Constant(radiance) if radiance < 0.0) {
+        if limits::least(p, &spectrum) < 0.0 {
             let span = p.span_of("ambient");
-            p.diagnostics().warning(span, "a negative ambient term is taken as 0");
+            p.diagnostics()
+                .warning(span, "an ambient term that is negative at some wavelength is taken as 0");
             return None;
         }
         Some(emitted(spectrum, 1.0, LightUnits::Photometric, &p.context.spectra))

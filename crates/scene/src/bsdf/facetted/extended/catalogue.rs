@@ -55,6 +55,11 @@ pub(in crate::bsdf) fn configurations() -> Vec<Configuration> {
         row("rough window", rough_glass).lossless(),
         row("solid glass", solid(smooth_glass)).lossless(),
         row("solid rough glass", solid(rough_glass)).lossless().breaking(&[Law::Furnace]),
+        row(
+            "solid rough glass without highlight",
+            solid(PrincipledParameters { specular: 0.0, ..rough_glass }),
+        )
+        .breaking(&[]),
         row("solid of index 1", solid(PrincipledParameters { ior: 1.0, ..rough_glass })).lossless(),
         row("everything", solid(everything(color))),
     ]

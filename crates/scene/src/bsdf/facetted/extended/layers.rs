@@ -63,7 +63,10 @@ impl Layers {
     pub(super) fn lobes(&self) -> Lobes {
         let present = |is_there, lobe| if is_there { lobe } else { Lobes::NONE };
         let base = &self.base;
-        let is_glossy = base.has_gloss() || self.coat.share > 0.0 || self.sheen.is_present();
+        // From inside, rough glass reflects even where the outside has no highlight.
+        let is_rough_glass = base.passes_rough() && base.eta != 1.0;
+        let is_glossy =
+            base.has_gloss() || is_rough_glass || self.coat.share > 0.0 || self.sheen.is_present();
         let is_diffuse = base.plastic() * base.color.max_value() > 0.0;
         present(is_diffuse, Lobes::DIFFUSE_REFLECT)
             | present(is_glossy, Lobes::GLOSSY_REFLECT)
