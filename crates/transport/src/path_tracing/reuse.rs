@@ -157,16 +157,15 @@ fn find_source(
     };
     walk.leave(tracer.scene, surface, &sample, walks_per_light_sample, path.layers);
     if sample.is_specular() {
-        return (if walk.survives_roulette(path) { walk.follow(tracer, path) } else { walk.radiance }, None);
+        let goes_on = walk.survives_roulette(path);
+        return (walk.follow_if(goes_on, tracer, path), None);
     }
     let Some((y, y_bsdf)) = walk.arrive(tracer, path) else {
         return (walk.radiance, None);
     };
     if !is_source(&y_bsdf) {
-        return (
-            if walk.visit(tracer, &y, &y_bsdf, path) { walk.follow(tracer, path) } else { walk.radiance },
-            None,
-        );
+        let goes_on = walk.visit(tracer, &y, &y_bsdf, path);
+        return (walk.follow_if(goes_on, tracer, path), None);
     }
     path.sampler.start_vertex();
     // Light arriving at y does not depend on the way from the camera.
@@ -183,15 +182,12 @@ fn find_source(
     let mut indirect = (y.wo, Sampled::ZERO);
     let mut own = walk.radiance;
     if !can_share(&y_bsdf) {
-        if walk.goes_on(tracer.scene, &y, &y_bsdf, 1.0, path) {
-            own = walk.follow(tracer, path);
-        }
+        own = walk.finish(tracer, &y, &y_bsdf, 1.0, path);
     } else if let Some(sample) = sample_to_share(&y, &y_bsdf, path) {
         walk.leave(tracer.scene, &y, &sample, 1.0, path.layers);
         if sample.is_specular() {
-            if walk.survives_roulette(path) {
-                own = walk.follow(tracer, path);
-            }
+            let goes_on = walk.survives_roulette(path);
+            own = walk.follow_if(goes_on, tracer, path);
         } else {
             let cos_per_pdf = y_bsdf.abs_cos(sample.wi) / sample.pdf_w;
             // Roulette still sees the throughput from the camera.

@@ -93,6 +93,16 @@ impl<'s> Walk<'s> {
         self.goes_on(tracer.scene, surface, bsdf, 1.0, path)
     }
 
+    /// [Follows](Self::follow) the path if it goes on; what it brings.
+    pub(super) fn follow_if(
+        self,
+        goes_on: bool,
+        tracer: &Tracer<'_>,
+        path: &mut CameraPath<'_, '_>,
+    ) -> Sampled {
+        if goes_on { self.follow(tracer, path) } else { self.radiance }
+    }
+
     /// Goes to the next surface that the path may scatter at, adding the emission on the way and of the surface itself;
     /// `None` if the path ends before.
     #[inline]
@@ -235,16 +245,13 @@ impl<'s> Walk<'s> {
         walks_per_light_sample: f32,
         path: &mut CameraPath<'_, '_>,
     ) -> Sampled {
-        if self.goes_on(tracer.scene, surface, bsdf, walks_per_light_sample, path) {
-            self.follow(tracer, path)
-        } else {
-            self.radiance
-        }
+        let goes_on = self.goes_on(tracer.scene, surface, bsdf, walks_per_light_sample, path);
+        self.follow_if(goes_on, tracer, path)
     }
 
     /// Chooses where the path goes from a surface; `false` if it ends there.
     #[inline]
-    pub(super) fn goes_on(
+    fn goes_on(
         &mut self,
         scene: &Scene,
         surface: &Surface,
