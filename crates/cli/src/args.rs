@@ -36,6 +36,8 @@ pub(crate) enum Command {
     Brdf(BrdfArguments),
     /// Tell how fast this machine is: rays, paths, look-ups and more per second
     Bench(BenchArguments),
+    /// Write a scene of the notebook with its meshes; `list scenes` shows all
+    Scene(SceneArguments),
 }
 
 /// Arguments of `render`.
@@ -151,6 +153,7 @@ pub(crate) enum ListKind {
     Accelerators,
     Tonemappers,
     Spectra,
+    Scenes,
 }
 
 /// Arguments of `compare`.
@@ -319,6 +322,23 @@ pub(crate) struct BenchArguments {
     pub(crate) quick: bool,
 }
 
+/// Arguments of `scene`.
+#[derive(Args, Debug)]
+pub(crate) struct SceneArguments {
+    /// Name of the scene
+    #[arg(required_unless_present = "all", conflicts_with = "all")]
+    pub(crate) name: Option<String>,
+    /// Write every scene with its defaults
+    #[arg(long, conflicts_with = "parameters")]
+    pub(crate) all: bool,
+    /// Parameter of the scene; may repeat
+    #[arg(long = "param", value_name = "NAME=VALUE", value_parser = parse_setting)]
+    pub(crate) parameters: Vec<(String, String)>,
+    /// Folder to write to
+    #[arg(short, long = "output", value_name = "DIR", default_value = ".")]
+    pub(crate) out: PathBuf,
+}
+
 fn parse_duration(text: &str) -> Result<Duration, String> {
     let number_end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(number_end);
@@ -371,6 +391,11 @@ fn parse_crop(text: &str) -> Result<[f32; 4], String> {
         }
         _ => Err(malformed()),
     }
+}
+
+fn parse_setting(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("a parameter is NAME=VALUE, such as seed=2")?;
+    Ok((name.trim().to_owned(), value.trim().to_owned()))
 }
 
 fn parse_named(text: &str) -> Result<(String, String), String> {

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use etendue::lab::generate::GENERATORS;
 use etendue::scene::build::{FILMS, SAMPLERS, SHAPES};
 use etendue::scene::camera::CAMERAS;
 use etendue::scene::filter::FILTERS;
@@ -25,12 +26,12 @@ pub(crate) fn print(line: &str) {
 struct Item {
     name: String,
     doc: String,
-    parameters: &'static [ParameterSpec],
+    parameters: Vec<ParameterSpec>,
 }
 
 impl Item {
-    fn new(name: &str, doc: &str, parameters: &'static [ParameterSpec]) -> Self {
-        Self { name: name.to_owned(), doc: doc.to_owned(), parameters }
+    fn new(name: &str, doc: &str, parameters: &[ParameterSpec]) -> Self {
+        Self { name: name.to_owned(), doc: doc.to_owned(), parameters: parameters.to_vec() }
     }
 }
 
@@ -48,7 +49,7 @@ pub(crate) fn run(arguments: &ListArguments) -> Result<()> {
     for item in &items {
         let separator = if item.doc.is_empty() { "" } else { ": " };
         print(&format!("{}{separator}{}", item.name, item.doc));
-        for p in item.parameters {
+        for p in &item.parameters {
             let default = if p.default.is_empty() { String::new() } else { format!(" = {}", p.default) };
             let unit = if p.unit.is_empty() { String::new() } else { format!(" [{}]", p.unit) };
             print(&format!("    {} {}{default}{unit}: {}", p.kind, p.name, p.doc));
@@ -112,5 +113,12 @@ fn items(kind: ListKind) -> Vec<Item> {
         .map(|(name, doc)| Item::new(name, doc, &[]))
         .into(),
         ListKind::Spectra => named_spectrum_names().iter().map(|name| Item::new(name, "", &[])).collect(),
+        ListKind::Scenes => GENERATORS
+            .iter()
+            .map(|g| {
+                let parameters: Vec<ParameterSpec> = g.parameters.iter().map(|knob| knob.spec).collect();
+                Item::new(g.name, &format!("{} ({})", g.doc, g.id), &parameters)
+            })
+            .collect(),
     }
 }

@@ -17,6 +17,7 @@ mod outputs;
 mod progress;
 mod render;
 mod report;
+mod scene;
 mod stats;
 mod study;
 mod tonemap;
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         Command::Study(arguments) => study::run(&arguments),
         Command::Brdf(arguments) => brdf::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Scene(arguments) => scene::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

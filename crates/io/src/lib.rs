@@ -24,4 +24,4 @@ pub use file::read_file;
 pub use images::{ImageError, read_image, read_texels, write_image};
 pub use measured::{measured_bytes, read_measured};
 pub use pbrt::{read_pbrt, read_pbrt_str, write_pbrt};
-pub use ply::read_ply;
+pub use ply::{read_ply, write_ply};

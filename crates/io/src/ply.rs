@@ -1,5 +1,5 @@
 //! Meshes in the Stanford polygon format (Turk 1994, "The PLY Polygon File Format"): ASCII and binary, also
-//! compressed by gzip.
+//! compressed by gzip. Written is the binary, little-endian form ([`write_ply`]).
 //!
 //! Read are the vertices' positions, normals and texture coordinates, and the faces with their `face_indices`; other
 //! properties and elements are skipped. Triangles stay, quadrilaterals become bilinear patches as in pbrt, larger
@@ -7,6 +7,7 @@
 
 mod body;
 mod header;
+mod write;
 
 #[cfg(test)]
 mod tests;
@@ -19,6 +20,7 @@ use etendue_scene::LoadedMesh;
 use crate::file::decompressed;
 use body::Body;
 use header::{Element, Header, PropertyKind};
+pub use write::write_ply;
 
 /// A mesh with what was odd about its file.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -14,6 +14,8 @@ pub mod pixel;
 pub mod scene_size;
 pub mod speed;
 
+pub mod generate;
+
 pub mod fit;
 pub mod plot;
 

@@ -3,7 +3,7 @@
 use crate::support::{Folder, ROOM, scene};
 
 /// What can be listed.
-const KINDS: [&str; 13] = [
+const KINDS: [&str; 14] = [
     "integrators",
     "materials",
     "textures",
@@ -17,6 +17,7 @@ const KINDS: [&str; 13] = [
     "accelerators",
     "tonemappers",
     "spectra",
+    "scenes",
 ];
 
 /// Every list is there, for people and as JSON, with the same names.

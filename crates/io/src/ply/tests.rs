@@ -5,7 +5,9 @@ use etendue_math::{Normal3, Point2, Point3};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-use super::{PlyError, PlyMesh, read_ply};
+use etendue_scene::LoadedMesh;
+
+use super::{PlyError, PlyMesh, read_ply, write_ply};
 
 /// The number types of a binary file.
 enum Order {
@@ -283,4 +285,20 @@ fn damaged_files_do_not_panic() {
         }
         drop(read_ply(&bytes));
     }
+}
+
+/// What is written reads back, with and without what is optional.
+#[test]
+fn written_meshes_read_back() {
+    let mut written = LoadedMesh {
+        positions: (0..5).map(|i| Point3::new(i as f32, 0.1 * i as f32, -1e-7)).collect(),
+        triangles: vec![[0, 1, 2], [2, 1, 4]],
+        quads: vec![[0, 1, 2, 3]],
+        ..LoadedMesh::default()
+    };
+    assert_eq!(mesh(&write_ply(&written)), PlyMesh { mesh: written.clone(), warnings: Vec::new() });
+    written.normals = (0..5).map(|i| Normal3::new(0.0, i as f32, 1.0)).collect();
+    written.uvs = (0..5).map(|i| Point2::new(0.5, i as f32)).collect();
+    written.face_indices = vec![3, -1, 7];
+    assert_eq!(mesh(&write_ply(&written)), PlyMesh { mesh: written, warnings: Vec::new() });
 }
