@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use etendue::io::checkpoint::hash_bytes;
-use etendue::io::{load_assets, read_pbrt};
+use etendue::io::{load_assets, read_scene};
 use etendue::scene::diagnostics::nearest_name;
 use etendue::scene::document::{Document, Entity, Parameter, Value};
 use etendue::scene::parameters::ParameterSpec;
@@ -47,10 +47,12 @@ pub(crate) fn load(
     expressions: PathExpressions,
     quiet: bool,
 ) -> Result<LoadedScene> {
-    let (mut document, mut diagnostics) = read_pbrt(path);
+    let (mut document, mut diagnostics) = read_scene(path);
     // A document with syntax errors still tells which of its files are missing.
     let (assets, problems) = load_assets(&document);
     diagnostics.append(problems);
+    // The scene takes meshes from their last owner, others it must copy.
+    document.embedded.clear();
     apply(overrides, &mut document);
     let (integrator, mut method_problems) = match &document.integrator {
         Some(entity) => method(entity, expressions),

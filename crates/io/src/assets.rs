@@ -7,16 +7,16 @@ use std::sync::Arc;
 use etendue_image::Texels;
 use etendue_scene::bsdf::measured::MeasuredBrdf;
 use etendue_scene::bsdf::tabulated::BrdfGrid;
-use etendue_scene::document::{Entity, ShapeEntity, Value};
-use etendue_scene::{Assets, Diagnostics, Document, Span};
+use etendue_scene::document::{EmbeddedFile, Entity, ShapeEntity, Value};
+use etendue_scene::{Assets, Diagnostics, Document, LoadedMesh, Span};
 use etendue_spectrum::{known_but_missing, named_spectrum};
 use rayon::prelude::*;
 
 use crate::brdf_table::read_brdf_table;
 use crate::file::read_file;
-use crate::images::read_texels;
+use crate::images::{read_texels, read_texels_from};
 use crate::measured::read_measured;
-use crate::ply::{PlyMesh, read_ply};
+use crate::ply::read_ply;
 use crate::spd::read_spd;
 
 #[cfg(test)]
@@ -37,8 +37,9 @@ type Wanted = BTreeMap<(Kind, String), Option<Span>>;
 
 /// What was read.
 enum Loaded {
-    Mesh(PlyMesh),
-    Image(Texels),
+    /// With what was odd about its file.
+    Mesh(Arc<LoadedMesh>, Vec<String>),
+    Image(Arc<Texels>),
     Spectrum(Vec<[f32; 2]>),
     Brdf(BrdfGrid),
     Measured(MeasuredBrdf),
@@ -47,26 +48,28 @@ enum Loaded {
 /// Reads all files that parameters of the document name; what cannot be read is an error at the parameter.
 ///
 /// Known are the meshes of `plymesh`, the images of `imagemap` textures, of lights and of normal maps, measured
-/// spectra, the tables of `tabulated` and the measurements of `measured`. File names are relative to [`Document::base_directory`].
+/// spectra, the tables of `tabulated` and the measurements of `measured`. File names are relative to [`Document::base_directory`];
+/// names in [`Document::embedded`] stand for what the document brings along.
 #[must_use]
 pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
     let wanted: Vec<_> = wanted_files(document).into_iter().collect();
-    let load = |((kind, name), _): &((Kind, String), Option<Span>)| {
-        load_file(*kind, &document.base_directory.join(name))
+    let load = |((kind, name), _): &((Kind, String), Option<Span>)| match document.embedded.get(name) {
+        Some(file) => load_embedded(*kind, name, file),
+        None => load_file(*kind, &document.base_directory.join(name)),
     };
     // Files differ much in size, so that each is a task of its own.
     let loaded: Vec<_> = wanted.par_iter().with_max_len(1).map(load).collect();
     let (mut assets, mut diagnostics) = (Assets::default(), Diagnostics::default());
     for (((_, name), span), loaded) in wanted.into_iter().zip(loaded) {
         match loaded {
-            Ok(Loaded::Mesh(ply)) => {
-                for warning in ply.warnings {
+            Ok(Loaded::Mesh(mesh, warnings)) => {
+                for warning in warnings {
                     diagnostics.warning(span, format!("mesh \"{name}\": {warning}"));
                 }
-                assets.meshes.insert(name, ply.mesh);
+                assets.meshes.insert(name, mesh);
             }
             Ok(Loaded::Image(texels)) => {
-                assets.images.insert(name, Arc::new(texels));
+                assets.images.insert(name, texels);
             }
             Ok(Loaded::Spectrum(samples)) => {
                 assets.spectra.insert(name, samples);
@@ -79,7 +82,10 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
             }
             Err(message) => {
                 let error = diagnostics.error(span, message);
-                if Path::new(&name).is_relative() && !document.base_directory.join(&name).exists() {
+                if Path::new(&name).is_relative()
+                    && !document.embedded.contains_key(&name)
+                    && !document.base_directory.join(&name).exists()
+                {
                     error.with_help("names of files are relative to the folder of the scene file");
                 }
                 assets.failed.insert(name);
@@ -90,18 +96,40 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
 }
 
 fn load_file(kind: Kind, path: &Path) -> Result<Loaded, String> {
-    let in_file = |why: String| format!("`{}`: {why}", path.display());
     if kind == Kind::Image {
-        return read_texels(path).map(Loaded::Image).map_err(|error| error.to_string());
+        let texels = read_texels(path).map_err(|error| error.to_string())?;
+        return Ok(Loaded::Image(Arc::new(texels)));
     }
     let bytes = read_file(path).map_err(|error| error.to_string())?;
-    match kind {
-        Kind::Mesh => read_ply(&bytes).map(Loaded::Mesh).map_err(|error| in_file(error.to_string())),
-        Kind::Brdf => read_brdf_table(&bytes).map(Loaded::Brdf).map_err(|error| in_file(error.to_string())),
-        Kind::Measured => {
-            read_measured(&bytes).map(Loaded::Measured).map_err(|error| in_file(error.to_string()))
+    decode(kind, &bytes).map_err(|why| format!("`{}`: {why}", path.display()))
+}
+
+fn load_embedded(kind: Kind, name: &str, file: &EmbeddedFile) -> Result<Loaded, String> {
+    match (kind, file) {
+        (Kind::Mesh, EmbeddedFile::Mesh(mesh)) => Ok(Loaded::Mesh(Arc::clone(mesh), Vec::new())),
+        (Kind::Image, EmbeddedFile::Image(texels)) => Ok(Loaded::Image(Arc::clone(texels))),
+        (Kind::Image, EmbeddedFile::Bytes(bytes)) => {
+            let texels = read_texels_from(name, Arc::clone(bytes)).map_err(|error| error.to_string())?;
+            Ok(Loaded::Image(Arc::new(texels)))
         }
-        _ => read_spd(&bytes).map(Loaded::Spectrum).map_err(|error| in_file(error.to_string())),
+        (_, EmbeddedFile::Bytes(bytes)) => decode(kind, bytes).map_err(|why| format!("`{name}`: {why}")),
+        (_, EmbeddedFile::Mesh(_)) => Err(format!("`{name}` is a mesh")),
+        (_, EmbeddedFile::Image(_)) => Err(format!("`{name}` is a picture")),
+    }
+}
+
+/// What the bytes of a file hold that is no picture.
+fn decode(kind: Kind, bytes: &[u8]) -> Result<Loaded, String> {
+    match kind {
+        Kind::Mesh => {
+            let ply = read_ply(bytes).map_err(|error| error.to_string())?;
+            Ok(Loaded::Mesh(Arc::new(ply.mesh), ply.warnings))
+        }
+        Kind::Brdf => read_brdf_table(bytes).map(Loaded::Brdf).map_err(|error| error.to_string()),
+        Kind::Measured => read_measured(bytes).map(Loaded::Measured).map_err(|error| error.to_string()),
+        Kind::Spectrum | Kind::Image => {
+            read_spd(bytes).map(Loaded::Spectrum).map_err(|error| error.to_string())
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Bytes to values and back: scene files, meshes, images, measured spectra and tables. The only crate below the front ends
 //! that opens files.
 //!
-//! Reading a scene has two steps: [`read_pbrt`] makes a [`Document`](etendue_scene::Document), which names files, and
+//! Reading a scene has two steps: [`read_scene`] makes a [`Document`](etendue_scene::Document), which names files, and
 //! [`load_assets`] reads these.
 
 pub mod assets;
@@ -12,6 +12,7 @@ pub mod images;
 pub mod measured;
 pub mod pbrt;
 pub mod ply;
+pub mod scene_file;
 pub mod spd;
 pub mod tensor;
 
@@ -21,7 +22,8 @@ pub use assets::load_assets;
 pub use brdf_table::read_brdf_table;
 pub use error::FileError;
 pub use file::read_file;
-pub use images::{ImageError, read_image, read_texels, write_image};
+pub use images::{ImageError, read_image, read_texels, read_texels_from, write_image};
 pub use measured::{measured_bytes, read_measured};
 pub use pbrt::{read_pbrt, read_pbrt_str, write_pbrt};
 pub use ply::{read_ply, write_ply};
+pub use scene_file::read_scene;

@@ -33,8 +33,8 @@ pub struct LoadedMesh {
 /// Everything that was loaded for a document.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
-    /// Meshes by file name.
-    pub meshes: HashMap<String, LoadedMesh>,
+    /// Meshes by file name; shared with the document if that brought them along.
+    pub meshes: HashMap<String, Arc<LoadedMesh>>,
     /// Pictures by file name, shared with the scene's textures and lights.
     pub images: HashMap<String, Arc<Texels>>,
     /// Measured spectra by file name: wavelengths in nanometres, ascending, with their values.

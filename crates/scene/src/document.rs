@@ -3,11 +3,15 @@
 //! Every reader of scene files makes a [`Document`], as do tests and generators. It says what was written, with
 //! transforms and attributes resolved; what the names mean is decided when the scene is built.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
+use etendue_image::Texels;
 use etendue_math::{AnimatedTransform, Normal3, Point2, Point3, Transform, Vector2, Vector3};
 use etendue_spectrum::ColorSpaceName;
 
+use crate::assets::LoadedMesh;
 use crate::diagnostics::{Sources, Span};
 
 /// The value of a parameter, by its declared type.
@@ -224,6 +228,17 @@ pub struct CameraEntity {
     pub medium: String,
 }
 
+/// A file that a document brings along.
+#[derive(Clone, Debug)]
+pub enum EmbeddedFile {
+    /// The content of a file of any kind, encoded as on disk.
+    Bytes(Arc<[u8]>),
+    /// A mesh that the reader of the scene has made.
+    Mesh(Arc<LoadedMesh>),
+    /// A picture that the reader of the scene has made.
+    Image(Arc<Texels>),
+}
+
 /// A whole scene as written.
 #[derive(Clone, Debug)]
 pub struct Document {
@@ -231,6 +246,8 @@ pub struct Document {
     pub sources: Sources,
     /// Folder that file names in parameters are relative to.
     pub base_directory: PathBuf,
+    /// Files that need not be opened, by the name that parameters give them: see [`Document::embed`].
+    pub embedded: BTreeMap<String, EmbeddedFile>,
     /// Parameters of `Option` directives.
     pub options: Vec<Parameter>,
     /// The camera; `None` means pbrt's default.
@@ -270,6 +287,7 @@ impl Default for Document {
         Self {
             sources: Sources::default(),
             base_directory: PathBuf::new(),
+            embedded: BTreeMap::new(),
             options: Vec::new(),
             camera: None,
             film: None,
@@ -287,5 +305,18 @@ impl Default for Document {
             objects: Vec::new(),
             instances: Vec::new(),
         }
+    }
+}
+
+impl Document {
+    /// Brings a file along and returns the name for parameters such as `filename`: `SCENE/part`, where `SCENE` is the
+    /// file name of the scene. Nothing on disk has such a name, since a file is no folder. A part that is there already
+    /// keeps its content.
+    pub fn embed(&mut self, part: &str, file: EmbeddedFile) -> String {
+        let scene = self.sources.files().first().map_or("scene", |main| main.name.as_str());
+        let scene = scene.rsplit(['/', '\\']).next().unwrap_or(scene);
+        let name = format!("{scene}/{part}");
+        self.embedded.entry(name.clone()).or_insert(file);
+        name
     }
 }

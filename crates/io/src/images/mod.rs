@@ -22,9 +22,10 @@ mod raster;
 mod write;
 
 use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::Arc;
 
 use etendue_image::{Encoding, Image, Texels};
 use image::ImageFormat;
@@ -50,14 +51,27 @@ const UNSUSPICIOUS_BYTES: u64 = 64 << 20;
 /// When the file cannot be read, is of no known format, or its contents contradict themselves.
 pub fn read_texels(path: impl AsRef<Path>) -> Result<Texels, ImageError> {
     let path = path.as_ref();
+    with_path(path, || texels_of(Opened::new(path)?))
+}
+
+/// The same from the bytes of a file; `name` stands for it in errors.
+///
+/// # Errors
+/// When the bytes are of no known format, or contradict themselves.
+pub fn read_texels_from(name: &str, bytes: Arc<[u8]>) -> Result<Texels, ImageError> {
+    let path = Path::new(name);
     with_path(path, || {
-        let mut file = Opened::new(path)?;
-        guarded(|| match file.format {
-            Format::OpenExr => openexr::read_texels(&mut file),
-            Format::Pfm => pfm::read(&mut file),
-            Format::Netpbm => netpbm::read(&mut file),
-            Format::Raster(format) => raster::read(&mut file, format),
-        })
+        let n_bytes = bytes.len() as u64;
+        texels_of(Opened::of(Box::new(Cursor::new(bytes)), n_bytes, &extension(path))?)
+    })
+}
+
+fn texels_of(mut file: Opened) -> Outcome<Texels> {
+    guarded(|| match file.format {
+        Format::OpenExr => openexr::read_texels(&mut file),
+        Format::Pfm => pfm::read(&mut file),
+        Format::Netpbm => netpbm::read(&mut file),
+        Format::Raster(format) => raster::read(&mut file, format),
     })
 }
 
@@ -104,10 +118,14 @@ enum Format {
     Raster(ImageFormat),
 }
 
+/// What decoders read from: a file, or bytes in memory.
+trait Source: BufRead + Seek {}
+
+impl<T: BufRead + Seek> Source for T {}
+
 /// A file of known format and length, at its beginning.
-#[derive(Debug)]
 struct Opened {
-    reader: BufReader<File>,
+    reader: Box<dyn Source>,
     format: Format,
     n_bytes: u64,
 }
@@ -119,15 +137,18 @@ impl Opened {
         if metadata.is_dir() {
             return Err(ImageErrorCause::IsDirectory);
         }
-        let mut reader = BufReader::new(file);
+        Self::of(Box::new(BufReader::new(file)), metadata.len(), &extension(path))
+    }
+
+    fn of(mut reader: Box<dyn Source>, n_bytes: u64, extension: &str) -> Outcome<Opened> {
         let mut start = Vec::new();
         reader.by_ref().take(16).read_to_end(&mut start)?;
         reader.seek(SeekFrom::Start(0))?;
         if start.is_empty() {
             return Err(ImageErrorCause::Truncated("the file is empty".to_owned()));
         }
-        let format = sniff(&start, &extension(path))?;
-        Ok(Opened { reader, format, n_bytes: metadata.len() })
+        let format = sniff(&start, extension)?;
+        Ok(Opened { reader, format, n_bytes })
     }
 }
 

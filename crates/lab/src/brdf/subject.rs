@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use etendue_io::pbrt::value_text;
-use etendue_io::{load_assets, read_pbrt, read_pbrt_str};
+use etendue_io::{load_assets, read_pbrt_str, read_scene};
 use etendue_math::{Point3, Ray, Vector3};
 use etendue_scene::bsdf::BsdfKind;
 use etendue_scene::diagnostics::nearest_name;
@@ -80,7 +80,7 @@ impl Subject {
     /// # Errors
     /// If the file cannot be read, has no such material, or the material is in error.
     pub fn of_scene(path: &Path, name: &str) -> SubjectResult {
-        let (document, diagnostics) = read_pbrt(path);
+        let (document, diagnostics) = read_scene(path);
         if diagnostics.has_errors() {
             return Err(SubjectError::Scene(diagnostics, document.sources));
         }

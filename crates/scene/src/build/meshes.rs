@@ -1,6 +1,7 @@
 //! Meshes: from parameters and loaded files to shapes.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use etendue_geometry::{BilinearMesh, Shape, TriangleMesh, loop_subdivide};
 use etendue_math::{Normal3, Point2, Vector3};
@@ -16,15 +17,15 @@ const MAX_SUBDIVISION_LEVELS: i32 = 10;
 /// Meshes from files, moved out at their last use and copied before.
 #[derive(Debug, Default)]
 pub(super) struct MeshStore {
-    meshes: HashMap<String, (LoadedMesh, usize)>,
+    meshes: HashMap<String, (Arc<LoadedMesh>, usize)>,
 }
 
 impl MeshStore {
     pub(super) fn new<'d>(
-        mut loaded: HashMap<String, LoadedMesh>,
+        mut loaded: HashMap<String, Arc<LoadedMesh>>,
         shapes: impl Iterator<Item = &'d ShapeEntity>,
     ) -> Self {
-        let mut meshes: HashMap<String, (LoadedMesh, usize)> = HashMap::new();
+        let mut meshes: HashMap<String, (Arc<LoadedMesh>, usize)> = HashMap::new();
         for shape in shapes {
             let Some(name) = mesh_file(shape) else { continue };
             if let Some(entry) = meshes.get_mut(name) {
@@ -40,9 +41,9 @@ impl MeshStore {
         let entry = self.meshes.get_mut(name)?;
         entry.1 -= 1;
         if entry.1 > 0 {
-            return Some(entry.0.clone());
+            return Some(LoadedMesh::clone(&entry.0));
         }
-        self.meshes.remove(name).map(|(mesh, _)| mesh)
+        self.meshes.remove(name).map(|(mesh, _)| Arc::unwrap_or_clone(mesh))
     }
 }
 

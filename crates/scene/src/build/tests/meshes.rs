@@ -1,5 +1,7 @@
 //! Meshes from parameters and from files.
 
+use std::sync::Arc;
+
 use etendue_math::Point2;
 
 use super::*;
@@ -77,7 +79,7 @@ fn loaded() -> LoadedMesh {
 }
 
 fn files() -> Assets {
-    Assets { meshes: HashMap::from([("a.ply".to_owned(), loaded())]), ..Assets::default() }
+    Assets { meshes: HashMap::from([("a.ply".to_owned(), loaded().into())]), ..Assets::default() }
 }
 
 fn ply() -> Entity {
@@ -135,7 +137,7 @@ fn files_that_were_not_read_are_left_out() {
 #[test]
 fn files_are_checked() {
     let mut assets = files();
-    assets.meshes.get_mut("a.ply").expect("it is there").quads[0][2] = 9;
+    Arc::make_mut(assets.meshes.get_mut("a.ply").expect("it is there")).quads[0][2] = 9;
     let (_, problems) = build_with(&lit_with(vec![shape(here(ply()))]), assets);
     only_problem(&problems, Severity::Error, "face 0 uses vertex 9");
     let displaced = here(ply().with("displacement", texture("bumps")).with("edgelength", floats(&[0.1])));

@@ -60,7 +60,8 @@ fn tables_list_what_is_asked_for() {
             positions: [0.0, 1.0, 2.0].map(|x| Point3::new(x, x * x, 0.0)).to_vec(),
             ..LoadedMesh::default()
         };
-        let assets = Assets { meshes: HashMap::from([("a.ply".to_owned(), mesh)]), ..Assets::default() };
+        let assets =
+            Assets { meshes: HashMap::from([("a.ply".to_owned(), mesh.into())]), ..Assets::default() };
         let (scene, problems) = build_with(&lit_with(vec![shape(entity)]), assets);
         assert!(problems.is_empty(), "{name}: {problems:?}");
         assert_eq!(scene.expect("no problem was reported").attributes.len(), 1);
