@@ -1,76 +1,74 @@
 //! Cameras from parameters, with pbrt-v4's names and defaults.
 
+mod lens;
+
 use etendue_math::{AnimatedTransform, Bounds2};
 
-use crate::parameters::{ParameterSpec, Parameters};
+use crate::parameters::{ParameterSpec, Parameters, spec};
 
 use super::{
-    Camera, Lens, Orthographic, Perspective, Projection, Screen, ScreenWindow, Shutter, Spherical,
+    Camera, Fisheye, FisheyeMapping, Orthographic, Projection, Screen, ScreenWindow, Shutter, Spherical,
     SphericalMapping,
 };
 
-const SHUTTER_OPEN: ParameterSpec = ParameterSpec {
-    name: "shutteropen",
-    kind: "float",
-    default: "0",
-    unit: "s",
-    doc: "when the film's exposure begins",
+use lens::{
+    BLADE_ROTATION, BLADES, FOCAL_DISTANCE, FOCAL_LENGTH, FOV, FSTOP, LENS_RADIUS, SENSOR_WIDTH, read_lens,
+    read_perspective,
 };
-const SHUTTER_CLOSE: ParameterSpec = ParameterSpec {
-    name: "shutterclose",
-    kind: "float",
-    default: "1",
-    unit: "s",
-    doc: "when the film's exposure ends",
-};
-const ASPECT: ParameterSpec = ParameterSpec {
-    name: "frameaspectratio",
-    kind: "float",
-    default: "film's",
-    unit: "",
-    doc: "width over height of the screen window",
-};
-const WINDOW: ParameterSpec = ParameterSpec {
-    name: "screenwindow",
-    kind: "float[4]",
-    default: "shorter side [-1, 1]",
-    unit: "",
-    doc: "x0 x1 y0 y1 of the image plane that the film covers",
-};
-const LENS_RADIUS: ParameterSpec = ParameterSpec {
-    name: "lensradius",
-    kind: "float",
-    default: "0",
-    unit: "m",
-    doc: "radius of the aperture; focal length / (2 f-number) of a photographic lens; 0 for a pinhole",
-};
-const FOCAL_DISTANCE: ParameterSpec = ParameterSpec {
-    name: "focaldistance",
-    kind: "float",
-    default: "1e6",
-    unit: "m",
-    doc: "distance of the plane of focus along the optical axis",
-};
-const FOV: ParameterSpec = ParameterSpec {
-    name: "fov",
-    kind: "float",
-    default: "90",
-    unit: "deg",
-    doc: "full angle of view across the shorter side of the window [-1, 1]",
-};
-const MAPPING: ParameterSpec = ParameterSpec {
-    name: "mapping",
-    kind: "string",
-    default: "equalarea",
-    unit: "",
-    doc: "equalarea or equirectangular",
-};
+
+const SHUTTER_OPEN: ParameterSpec = spec("shutteropen", "float", "0", "s", "when the film's exposure begins");
+const SHUTTER_CLOSE: ParameterSpec = spec("shutterclose", "float", "1", "s", "when the film's exposure ends");
+const ASPECT: ParameterSpec =
+    spec("frameaspectratio", "float", "film's", "", "width over height of the screen window");
+const WINDOW: ParameterSpec = spec(
+    "screenwindow",
+    "float[4]",
+    "shorter side [-1, 1]",
+    "",
+    "x0 x1 y0 y1 of the image plane that the film covers",
+);
+const SPHERICAL_MAPPING: ParameterSpec =
+    spec("mapping", "string", "equalarea", "", "equalarea or equirectangular");
+const FISHEYE_MAPPING: ParameterSpec = spec(
+    "mapping",
+    "string",
+    "equidistant",
+    "",
+    "equidistant, equisolid, stereographic or orthographic: how distances in the image grow with angles",
+);
+const FISHEYE_FOV: ParameterSpec = spec(
+    "fov",
+    "float",
+    "180",
+    "deg",
+    "full angle of view across the circle of radius 1 of the window; black beyond",
+);
 
 /// Cameras with their parameters.
 pub static CAMERAS: &[(&str, &[ParameterSpec])] = &[
-    ("perspective", &[FOV, LENS_RADIUS, FOCAL_DISTANCE, ASPECT, WINDOW, SHUTTER_OPEN, SHUTTER_CLOSE]),
-    ("orthographic", &[LENS_RADIUS, FOCAL_DISTANCE, ASPECT, WINDOW, SHUTTER_OPEN, SHUTTER_CLOSE]),
-    ("spherical", &[MAPPING, SHUTTER_OPEN, SHUTTER_CLOSE]),
+    (
+        "perspective",
+        &[
+            FOV,
+            FOCAL_LENGTH,
+            SENSOR_WIDTH,
+            FSTOP,
+            LENS_RADIUS,
+            FOCAL_DISTANCE,
+            BLADES,
+            BLADE_ROTATION,
+            ASPECT,
+            WINDOW,
+            SHUTTER_OPEN,
+            SHUTTER_CLOSE,
+        ],
+    ),
+    (
+        "orthographic",
+        &[LENS_RADIUS, FOCAL_DISTANCE, BLADES, BLADE_ROTATION, ASPECT, WINDOW, SHUTTER_OPEN, SHUTTER_CLOSE],
+    ),
+    ("spherical", &[SPHERICAL_MAPPING, SHUTTER_OPEN, SHUTTER_CLOSE]),
+    ("fisheye", &[FISHEYE_MAPPING, FISHEYE_FOV, ASPECT, WINDOW, SHUTTER_OPEN, SHUTTER_CLOSE]),
 ];
 
 impl Camera {
@@ -89,17 +87,8 @@ impl Camera {
                 let screen = read_screen(parameters, size);
                 Projection::Orthographic(Orthographic { screen, lens: read_lens(parameters) })
             }
-            "spherical" => {
-                let choices = [
-                    ("equalarea", SphericalMapping::EqualArea),
-                    ("equirectangular", SphericalMapping::Equirectangular),
-                ];
-                let mapping = parameters.choice("mapping", "equalarea", &choices);
-                for unused in ["lensradius", "focaldistance", "frameaspectratio", "screenwindow"] {
-                    parameters.ignore(unused);
-                }
-                Projection::Spherical(Spherical { resolution: size, mapping })
-            }
+            "spherical" => Projection::Spherical(read_spherical(parameters, size)),
+            "fisheye" => Projection::Fisheye(read_fisheye(parameters, size)),
             _ => {
                 if name != "perspective" {
                     let span = parameters.span();
@@ -107,48 +96,58 @@ impl Camera {
                     parameters.diagnostics().unknown_name(span, "camera", name, known);
                     parameters.accept_all();
                 }
-                Projection::Perspective(read_perspective(parameters, size))
+                let screen = read_screen(parameters, size);
+                Projection::Perspective(read_perspective(parameters, screen))
             }
         };
         Self::new(projection, world_from_camera, shutter, resolution, crop)
     }
 }
 
-fn read_perspective(parameters: &mut Parameters<'_, '_>, size: [f32; 2]) -> Perspective {
-    let screen = read_screen(parameters, size);
-    let mut fov = parameters.float("fov", 90.0);
-    if !(fov > 0.0 && fov < 180.0) {
-        let span = parameters.span_of("fov");
-        parameters.diagnostics().error(span, format!("\"fov\" must be between 0 and 180 degrees, not {fov}"));
-        fov = 90.0;
+fn read_spherical(parameters: &mut Parameters<'_, '_>, resolution: [f32; 2]) -> Spherical {
+    let choices =
+        [("equalarea", SphericalMapping::EqualArea), ("equirectangular", SphericalMapping::Equirectangular)];
+    let mapping = parameters.choice("mapping", "equalarea", &choices);
+    for unused in ["lensradius", "focaldistance", "frameaspectratio", "screenwindow"] {
+        parameters.ignore(unused);
     }
-    let tan_half_fov = (f64::from(fov).to_radians() / 2.0).tan() as f32;
-    Perspective { screen, tan_half_fov, lens: read_lens(parameters) }
+    Spherical { resolution, mapping }
+}
+
+fn read_fisheye(parameters: &mut Parameters<'_, '_>, resolution: [f32; 2]) -> Fisheye {
+    let screen = read_screen(parameters, resolution);
+    let choices = [
+        ("equidistant", FisheyeMapping::Equidistant),
+        ("equisolid", FisheyeMapping::Equisolid),
+        ("stereographic", FisheyeMapping::Stereographic),
+        ("orthographic", FisheyeMapping::Orthographic),
+    ];
+    let mapping = parameters.choice("mapping", "equidistant", &choices);
+    let mut fov = parameters.float("fov", 180.0);
+    let (widest, is_included) = mapping.widest_fov_deg();
+    if !(fov > 0.0 && (fov < widest || is_included && fov == widest)) {
+        let span = parameters.span_of("fov");
+        let limit = if is_included { "at most" } else { "below" };
+        let message =
+            format!("\"fov\" of this mapping must be above 0 and {limit} {widest} degrees, not {fov}");
+        parameters.diagnostics().error(span, message);
+        fov = 180.0;
+    }
+    Fisheye { screen, mapping, half_fov_rad: fov.to_radians() / 2.0 }
 }
 
 fn read_shutter(parameters: &mut Parameters<'_, '_>) -> Shutter {
     let (open, close) = (parameters.float("shutteropen", 0.0), parameters.float("shutterclose", 1.0));
-    if close >= open {
+    if close >= open && open.is_finite() && close.is_finite() {
         return Shutter { open, close };
     }
     let span = parameters.span_of("shutterclose");
+    if !(open.is_finite() && close.is_finite()) {
+        parameters.diagnostics().error(span, "the times of the shutter must be finite");
+        return Shutter::default();
+    }
     parameters.diagnostics().warning(span, "the shutter closes before it opens; the times are exchanged");
     Shutter { open: close, close: open }
-}
-
-fn read_lens(parameters: &mut Parameters<'_, '_>) -> Lens {
-    let lens = Lens {
-        radius: parameters.float("lensradius", 0.0),
-        focal_distance: parameters.float("focaldistance", 1e6),
-    };
-    if lens.radius >= 0.0 && lens.focal_distance > 0.0 {
-        return lens;
-    }
-    let span = parameters.span_of("lensradius");
-    parameters
-        .diagnostics()
-        .error(span, "\"lensradius\" must not be negative and \"focaldistance\" must be positive");
-    Lens::PINHOLE
 }
 
 fn read_screen(parameters: &mut Parameters<'_, '_>, resolution: [f32; 2]) -> Screen {
@@ -162,11 +161,11 @@ fn read_screen(parameters: &mut Parameters<'_, '_>, resolution: [f32; 2]) -> Scr
     let Some(values) = parameters.floats("screenwindow") else {
         return Screen { window, resolution };
     };
-    if let [x0, x1, y0, y1] = *values
-        && x0 != x1
-        && y0 != y1
-    {
-        return Screen { window: ScreenWindow { x: [x0, x1], y: [y0, y1] }, resolution };
+    if let [x0, x1, y0, y1] = *values {
+        let window = ScreenWindow { x: [x0, x1], y: [y0, y1] };
+        if window.area() > 0.0 && window.area().is_finite() {
+            return Screen { window, resolution };
+        }
     }
     let span = parameters.span_of("screenwindow");
     parameters.diagnostics().error(span, "\"screenwindow\" needs four values x0 x1 y0 y1 that span an area");

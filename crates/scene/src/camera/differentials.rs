@@ -7,7 +7,7 @@
 
 use etendue_math::{Frame, Normal3, Point2, Point3, Vector3};
 
-use super::{Camera, Projection};
+use super::{Camera, CameraRay, Projection};
 
 /// The smallest change of camera rays per pixel, along x and y, in the frame of the ray.
 #[derive(Clone, Copy, Debug)]
@@ -37,12 +37,12 @@ impl MinimumDifferentials {
         for i in 0..N_POSITIONS {
             let t = (i as f32 + 0.5) / N_POSITIONS as f32;
             let p = Point2::new(t * resolution[0] as f32, t * resolution[1] as f32);
-            let ray = projection.ray(p, centre);
+            let Some(CameraRay { ray, .. }) = projection.ray(p, centre) else { continue };
             let frame = ray_frame(ray.direction);
             for axis in 0..2 {
                 let mut shifted = p;
                 shifted[axis] += STEP;
-                let other = projection.ray(shifted, centre);
+                let Some(CameraRay { ray: other, .. }) = projection.ray(shifted, centre) else { continue };
                 keep_shorter(&mut result.origin[axis], frame.to_local(other.origin - ray.origin) / STEP);
                 let mut change = frame.to_local(other.direction - ray.direction) / STEP;
                 change.z = 0.0;

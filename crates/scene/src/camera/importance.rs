@@ -9,7 +9,7 @@
 
 use etendue_math::{Point2, Point3, Ray, Vector3};
 
-use super::{Camera, Orthographic, Perspective, Projection, Spherical};
+use super::{Camera, Fisheye, Orthographic, Perspective, Projection, Spherical};
 
 /// What the film receives along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,6 +108,25 @@ impl Spherical {
     }
 }
 
+impl Fisheye {
+    fn film_importance(&self, ray: &Ray) -> Option<FilmImportance> {
+        let pdf_w = self.direction_pdf(ray.direction);
+        Some(FilmImportance {
+            we: pdf_w,
+            p_film: self.raster_from_direction(ray.direction)?,
+            pdf_a: 1.0,
+            pdf_w,
+        })
+    }
+}
+
+/// The ray from the middle of a camera that is a point to `p`, and that middle.
+fn towards(p: Point3) -> Option<(Ray, LensPoint)> {
+    let to_p = p.as_vector();
+    let ray = Ray::new(Point3::ORIGIN, to_p.try_normalized()?);
+    Some((ray, LensPoint { p_lens: Point3::ORIGIN, pdf_w: to_p.length_squared() }))
+}
+
 impl Camera {
     /// What the film receives along a ray that starts on the lens and has unit direction; `None` outside of the crop.
     /// Rays of a parallel bundle without a lens cannot be met by chance: `None`.
@@ -119,6 +138,7 @@ impl Camera {
             Projection::Perspective(camera) => camera.film_importance(&ray_camera),
             Projection::Orthographic(camera) => camera.film_importance(&ray_camera),
             Projection::Spherical(camera) => Some(camera.film_importance(&ray_camera)),
+            Projection::Fisheye(camera) => camera.film_importance(&ray_camera),
         };
         result.filter(|result| self.in_crop(result.p_film))
     }
@@ -143,12 +163,12 @@ impl Camera {
             }
             Projection::Orthographic(camera) => camera.sample_lens(p_camera, u)?,
             Projection::Spherical(camera) => {
-                let to_p = p_camera.as_vector();
-                let ray = Ray::new(Point3::ORIGIN, to_p.try_normalized()?);
-                (
-                    LensPoint { p_lens: Point3::ORIGIN, pdf_w: to_p.length_squared() },
-                    camera.film_importance(&ray),
-                )
+                let (ray, lens) = towards(p_camera)?;
+                (lens, camera.film_importance(&ray))
+            }
+            Projection::Fisheye(camera) => {
+                let (ray, lens) = towards(p_camera)?;
+                (lens, camera.film_importance(&ray)?)
             }
         };
         if !self.in_crop(film.p_film) {
@@ -180,6 +200,7 @@ impl Camera {
             }
             Projection::Orthographic(_) => return None,
             Projection::Spherical(camera) => camera.raster_from_direction(p.as_vector().try_normalized()?),
+            Projection::Fisheye(camera) => camera.raster_from_direction(p.as_vector().try_normalized()?)?,
         };
         self.in_crop(p_film).then_some(p_film)
     }

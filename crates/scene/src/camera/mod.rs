@@ -1,4 +1,4 @@
-//! Cameras (SPEC CAM-1 to CAM-3): from a place on the film, on the lens and in time to a ray, and back.
+//! Cameras (SPEC CAM-1 to CAM-4): from a place on the film, on the lens and in time to a ray, and back.
 //!
 //! Camera space has +z ahead and +y up. Raster coordinates count pixels, x to the right and y down, with pixel centres
 //! at +0.5. A camera's importance `we` is normalised to an integral of 1 over the whole film: a path from the lights
@@ -6,24 +6,29 @@
 
 mod build;
 mod differentials;
+mod fisheye;
 mod importance;
 mod lens;
 mod orthographic;
 mod perspective;
+mod photographic;
+
 mod screen;
 mod spherical;
 #[cfg(test)]
 mod tests;
 
-use etendue_math::{AnimatedTransform, Bounds2, Point2, Ray, Transform, lerp};
+use etendue_math::{AnimatedTransform, Bounds2, Motion, Point2, Ray, Transform, lerp};
 
 use differentials::MinimumDifferentials;
 
 pub use build::CAMERAS;
+pub use fisheye::{Fisheye, FisheyeMapping};
 pub use importance::{CameraWiSample, FilmImportance};
-pub use lens::{Lens, circle_of_confusion, field_of_view};
+pub use lens::{Blades, Lens, circle_of_confusion, field_of_view};
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
+pub use photographic::Photographic;
 pub use screen::{Screen, ScreenWindow};
 pub use spherical::{Spherical, SphericalMapping};
 
@@ -39,17 +44,21 @@ pub enum Projection {
     Orthographic(Orthographic),
     /// All directions from a point.
     Spherical(Spherical),
+    /// A cone of directions from a point, however wide.
+    Fisheye(Fisheye),
 }
 
 impl Projection {
-    /// The ray in camera space, of unit direction, at time 0.
+    /// The ray in camera space, of unit direction, at time 0, with its weight; `None` where the film stays black.
     #[inline]
-    fn ray(&self, p_film: Point2, u_lens: Point2) -> Ray {
-        match self {
+    fn ray(&self, p_film: Point2, u_lens: Point2) -> Option<CameraRay> {
+        let ray = match self {
             Self::Perspective(camera) => camera.ray(p_film, u_lens),
             Self::Orthographic(camera) => camera.ray(p_film, u_lens),
             Self::Spherical(camera) => camera.ray(p_film),
-        }
+            Self::Fisheye(camera) => camera.ray(p_film)?,
+        };
+        Some(CameraRay { ray, weight: 1.0 })
     }
 }
 
@@ -82,7 +91,8 @@ impl Default for Shutter {
 pub struct Camera {
     projection: Projection,
     world_from_camera: AnimatedTransform,
-    is_moving: bool,
+    /// The same, where it changes, ready to be interpolated.
+    motion: Option<Box<Motion>>,
     shutter: Shutter,
     /// The part of the film that is rendered, in pixels: elsewhere the camera takes no light.
     crop: Bounds2,
@@ -100,8 +110,8 @@ impl Camera {
         crop: Bounds2,
     ) -> Self {
         let differentials = MinimumDifferentials::new(&projection, resolution);
-        let is_moving = world_from_camera.is_animated();
-        Self { projection, world_from_camera, is_moving, shutter, crop, differentials }
+        let motion = world_from_camera.is_animated().then(|| Box::new(world_from_camera.motion()));
+        Self { projection, world_from_camera, motion, shutter, crop, differentials }
     }
 
     /// The projection.
@@ -132,22 +142,25 @@ impl Camera {
     /// Placement at a time in seconds.
     #[inline]
     pub fn transform_at(&self, time: f32) -> Transform {
-        if self.is_moving { self.world_from_camera.at(time) } else { self.world_from_camera.start }
+        match &self.motion {
+            Some(motion) => motion.at(time),
+            None => self.world_from_camera.start,
+        }
     }
 
-    /// The ray through raster position `p_film` (pixels) for a random point of the lens and a random time.
+    /// The ray through raster position `p_film` (pixels) for a random point of the lens and a random time; `None` where no
+    /// light gets there.
     #[inline]
     #[must_use]
     pub fn sample_ray(&self, p_film: Point2, u_lens: Point2, u_time: f32) -> Option<CameraRay> {
         let time = self.sample_time(u_time);
-        let camera_ray = self.projection.ray(p_film, u_lens);
-        let mut ray = if self.is_moving {
-            self.world_from_camera.at(time).ray(&camera_ray)
-        } else {
-            self.world_from_camera.start.ray(&camera_ray)
+        let CameraRay { ray, weight } = self.projection.ray(p_film, u_lens)?;
+        let mut ray = match &self.motion {
+            Some(motion) => motion.at(time).ray(&ray),
+            None => self.world_from_camera.start.ray(&ray),
         };
         ray.direction = ray.direction.try_normalized()?;
         ray.time = time;
-        Some(CameraRay { ray, weight: 1.0 })
+        Some(CameraRay { ray, weight })
     }
 }

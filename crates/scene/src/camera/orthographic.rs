@@ -43,8 +43,8 @@ impl Orthographic {
             return None;
         }
         let scale = self.lens.focal_distance / d.z;
-        let offset_squared = (d.x * d.x + d.y * d.y) * scale * scale;
-        if offset_squared > self.lens.radius * self.lens.radius {
+        // The ray runs from the lens point towards the middle of its bundle.
+        if !self.lens.contains(Point2::new(-d.x * scale, -d.y * scale)) {
             return None;
         }
         let p = Point2::new(ray.origin.x + d.x * scale, ray.origin.y + d.y * scale);

@@ -10,6 +10,9 @@ use crate::assets::Assets;
 use crate::document::{Entity, Value};
 use crate::parameters::{BuildContext, Parameters};
 
+mod fisheye;
+mod lens;
+
 const SIGNIFICANCE: f64 = 1e-5;
 const MIDDLE: Point2 = Point2::new(0.5, 0.5);
 
@@ -41,7 +44,23 @@ fn spherical(mapping: SphericalMapping, resolution: [u32; 2]) -> Projection {
     Projection::Spherical(Spherical { resolution: [resolution[0] as f32, resolution[1] as f32], mapping })
 }
 
-const LENS: Lens = Lens { radius: 0.3, focal_distance: 3.0 };
+/// A circle that goes around the whole film, so that every raster position has a ray.
+fn fisheye(mapping: FisheyeMapping, fov_deg: f32, resolution: [u32; 2]) -> Projection {
+    let aspect = resolution[0] as f32 / resolution[1] as f32;
+    let screen = Screen {
+        window: ScreenWindow { x: [-0.55 * aspect, 0.55 * aspect], y: [-0.55, 0.55] },
+        ..screen(resolution)
+    };
+    Projection::Fisheye(Fisheye { screen, mapping, half_fov_rad: fov_deg.to_radians() / 2.0 })
+}
+
+const PENTAGON: Lens = Lens { blades: Some(Blades { n: 5, rotation_rad: 0.3 }), ..LENS };
+const LENS: Lens = Lens { radius: 0.3, blades: None, focal_distance: 3.0 };
+
+/// Cameras that are a point, and look beyond a plane.
+const fn is_point(projection: &Projection) -> bool {
+    matches!(projection, Projection::Spherical(_) | Projection::Fisheye(_))
+}
 
 /// Every kind of camera, seeing the plane z = 5 within |x|, |y| < 5.
 fn all_kinds(resolution: [u32; 2]) -> Vec<(&'static str, Projection)> {
@@ -52,6 +71,12 @@ fn all_kinds(resolution: [u32; 2]) -> Vec<(&'static str, Projection)> {
         ("telecentric lens", orthographic(LENS, resolution)),
         ("equal area", spherical(SphericalMapping::EqualArea, resolution)),
         ("equirectangular", spherical(SphericalMapping::Equirectangular, resolution)),
+        ("pentagon", perspective(60.0, PENTAGON, resolution)),
+        ("telecentric pentagon", orthographic(PENTAGON, resolution)),
+        ("equidistant", fisheye(FisheyeMapping::Equidistant, 170.0, resolution)),
+        ("equisolid", fisheye(FisheyeMapping::Equisolid, 300.0, resolution)),
+        ("stereographic", fisheye(FisheyeMapping::Stereographic, 250.0, resolution)),
+        ("orthographic fisheye", fisheye(FisheyeMapping::Orthographic, 179.0, resolution)),
     ]
 }
 
@@ -178,7 +203,7 @@ fn cam_3_plane_of_focus_is_sharp() {
 #[test]
 fn cam_3_small_apertures_approach_the_pinhole() {
     let resolution = [64, 48];
-    let narrow = Lens { radius: 1e-5, focal_distance: 3.0 };
+    let narrow = Lens { radius: 1e-5, blades: None, focal_distance: 3.0 };
     for (with, without) in [
         (perspective(50.0, narrow, resolution), perspective(50.0, Lens::PINHOLE, resolution)),
         (orthographic(narrow, resolution), orthographic(Lens::PINHOLE, resolution)),
@@ -224,21 +249,24 @@ fn directions_have_their_density() {
         if name == "orthographic" {
             continue;
         }
+        let is_by_lens = matches!(projection, Projection::Orthographic(_));
         let camera = camera(projection, resolution);
         let mut rng = Rng::new(hash64(&[40, i as u64]), 1);
         for _ in 0..300 {
             let (film, lens) = (rng.next_point2(), rng.next_point2());
             let ray = |u: Point2| {
-                let (film, lens) = if name == "telecentric lens" { (film, u) } else { (u, lens) };
+                let (film, lens) = if is_by_lens { (film, u) } else { (u, lens) };
                 let p_film = Point2::new(film.x * resolution[0] as f32, film.y * resolution[1] as f32);
                 camera.sample_ray(p_film, lens, 0.0).unwrap().ray
             };
-            let u = if name == "telecentric lens" { lens } else { film };
-            // Both warps have creases at the middle, the diagonals and the border.
+            let u = if is_by_lens { lens } else { film };
+            // The warps of disc and sphere have creases at the middle, the diagonals and the border, that of a pentagon
+            // at its corners.
             let (x, y) = (2.0 * u.x - 1.0, 2.0 * u.y - 1.0);
             let to_crease =
                 x.abs().min(y.abs()).min((x.abs() - y.abs()).abs()).min((1.0 - x.abs() - y.abs()).abs());
-            if to_crease < 0.1 || x.abs().max(y.abs()) > 0.9 {
+            let from_corner = (5.0 * u.x - (5.0 * u.x).round()).abs();
+            if to_crease < 0.1 || x.abs().max(y.abs()) > 0.9 || is_by_lens && from_corner < 0.05 {
                 continue;
             }
             let change = |dx: f32, dy: f32| {
@@ -261,7 +289,7 @@ fn importance_is_the_density_of_rays() {
         if matches!(projection, Projection::Orthographic(o) if !o.lens.has_area()) {
             continue;
         }
-        let is_point = matches!(projection, Projection::Spherical(_));
+        let is_point = is_point(&projection);
         let camera = camera(projection, resolution);
         let mut rng = Rng::new(9, 9);
         for _ in 0..500 {
@@ -285,7 +313,7 @@ fn light_paths_and_camera_paths_agree() {
     let n_samples = 60_000;
     let half = 5.0_f32;
     for (i, (name, projection)) in all_kinds(resolution).into_iter().enumerate() {
-        let is_sphere = matches!(projection, Projection::Spherical(_));
+        let is_sphere = is_point(&projection);
         let camera = camera(projection, resolution);
         let mut rng = Rng::new(hash64(&[50, i as u64]), 1);
         let mut pixels = vec![Moments::new(); n_pixels];
