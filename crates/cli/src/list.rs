@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use etendue::lab::generate::GENERATORS;
-use etendue::scene::build::{FILMS, SAMPLERS, SHAPES};
+use etendue::scene::build::{ACCELERATORS, FILMS, SAMPLERS, SHAPES};
 use etendue::scene::camera::CAMERAS;
 use etendue::scene::filter::FILTERS;
 use etendue::scene::light::LightKind;
@@ -102,7 +102,7 @@ fn items(kind: ListKind) -> Vec<Item> {
         ListKind::Samplers => tabled(SAMPLERS),
         ListKind::Filters => tabled(FILTERS),
         ListKind::Accelerators => {
-            vec![Item::new("bvh", "bounding volume hierarchy by the surface area heuristic", &[])]
+            ACCELERATORS.iter().map(|(name, doc, parameters)| Item::new(name, doc, parameters)).collect()
         }
         ListKind::Tonemappers => [
             ("clamp", "clip to [0, 1]"),

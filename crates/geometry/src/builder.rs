@@ -2,6 +2,7 @@
 
 use etendue_math::{AnimatedTransform, Bounds3, Transform};
 
+use crate::accelerator::{Accelerator, Group, Structures};
 use crate::bvh::{self, BuildPrimitive, Bvh, INSTANCE, PrimitiveRef, TriangleSource};
 use crate::geometry::Geometry;
 use crate::hit::{GeometryId, ObjectId};
@@ -82,21 +83,44 @@ impl GeometryBuilder {
     /// Builds the hierarchies, in parallel on the current rayon pool. The result does not depend on its size.
     #[must_use]
     pub fn build(self) -> Geometry {
-        let entities = self.entities;
-        let (primitives, source) = collect(&entities, &self.groups, self.n_objects as usize + 1, |_| true);
+        let (groups, instances) = self.build_groups(|own, source| bvh::build(own, source), Bvh::bounds);
+        Geometry::new(self.entities, self.groups, groups, None, instances)
+    }
+
+    /// The same with some other structure. Hits are the same, bit for bit; what they cost is not.
+    #[must_use]
+    pub fn build_with(self, accelerator: Accelerator) -> Geometry {
+        if accelerator == Accelerator::Bvh {
+            return self.build();
+        }
+        let (groups, instances) =
+            self.build_groups(|own, source| Group::build(own, source, &accelerator), Group::bounds);
+        let placeholders = groups.iter().map(|group| Bvh::placeholder(group.bounds())).collect();
+        let structures = Structures { accelerator, groups };
+        Geometry::new(self.entities, self.groups, placeholders, Some(structures), instances)
+    }
+
+    /// The world first, then the objects; and the instances.
+    fn build_groups<G>(
+        &self,
+        build: impl Fn(Vec<BuildPrimitive>, &Triangles<'_>) -> G,
+        bounds: impl Fn(&G) -> Bounds3,
+    ) -> (Vec<G>, Vec<Instance>) {
+        let (primitives, source) =
+            collect(&self.entities, &self.groups, self.n_objects as usize + 1, |_| true);
         let mut primitives = primitives.into_iter();
         let mut world = primitives.next().unwrap_or_default();
-        let objects: Vec<Bvh> = primitives.map(|own| bvh::build(own, &source)).collect();
+        let objects: Vec<G> = primitives.map(|own| build(own, &source)).collect();
         let mut instances = Vec::with_capacity(self.instances.len());
         for (index, (object, world_from_object)) in self.instances.iter().enumerate() {
-            let bounds = objects[object.0 as usize].bounds();
+            let bounds = bounds(&objects[object.0 as usize]);
             let instance = Instance::new(object.0 + 1, world_from_object);
             world.extend(instance_primitive(index as u32, instance.world_bounds(bounds)));
             instances.push(instance);
         }
-        let mut groups = vec![bvh::build(world, &source)];
+        let mut groups = vec![build(world, &source)];
         groups.extend(objects);
-        Geometry::new(entities, self.groups, groups, instances)
+        (groups, instances)
     }
 }
 
@@ -122,21 +146,22 @@ fn instance_primitive(index: u32, bounds: Option<Bounds3>) -> Option<BuildPrimit
     bounds.map(|bounds| BuildPrimitive::item(PrimitiveRef { geometry: INSTANCE, primitive: index }, bounds))
 }
 
-/// Builds the hierarchy of one group; the world has instances in these boxes.
-pub(crate) fn build_group(
-    entities: &[Entity],
+/// Builds the hierarchy of one group, or what takes its place; the world has instances in these boxes.
+pub(crate) fn build_group<'e, G>(
+    entities: &'e [Entity],
     entity_groups: &[u32],
     group: u32,
     instance_bounds: impl Iterator<Item = Option<Bounds3>>,
-) -> Bvh {
+    build: impl Fn(Vec<BuildPrimitive>, &Triangles<'e>) -> G,
+) -> G {
     let (mut primitives, source) = collect(entities, entity_groups, group as usize + 1, |own| own == group);
     let mut own = primitives.swap_remove(group as usize);
     own.extend((0..).zip(instance_bounds).filter_map(|(index, bounds)| instance_primitive(index, bounds)));
-    bvh::build(own, &source)
+    build(own, &source)
 }
 
 /// All triangles, for the hierarchies.
-struct Triangles<'a> {
+pub(crate) struct Triangles<'a> {
     entities: &'a [Entity],
     /// See [`bvh::append_pairs`], for each entity.
     seconds: Vec<Vec<u32>>,

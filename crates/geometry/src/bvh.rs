@@ -22,10 +22,9 @@ mod wide;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use build::{BuildPrimitive, TriangleSource, build};
+pub(crate) use build::{Box3, BuildPrimitive, TriangleSource, build};
 pub(crate) use pair::{append_pairs, second_of};
-pub(crate) use ray::WideRay;
-use ray::{TraversalRay, WideBounds};
+pub(crate) use ray::{TraversalRay, WideBounds, WideRay};
 
 use etendue_math::{Bounds3, Ray};
 use node::{INNER, ITEMS, Node, TRIANGLES, leaf_range};
@@ -68,8 +67,8 @@ pub(crate) trait Visitor<'a> {
     fn leave(&mut self);
     /// The children of a node are about to be tested.
     fn note_node(&mut self);
-    /// A block of triangles is about to be tested.
-    fn note_block(&mut self);
+    /// A block of triangles is about to be tested; how many it holds is told on request.
+    fn note_block(&mut self, n_triangles: impl FnOnce() -> u32);
 }
 
 /// What processors keep near at hand, roughly: a first-level cache and some of the second. Below this size announcing nodes
@@ -109,6 +108,11 @@ impl Bvh {
         }
         let n_bytes = size_of_val(&nodes[..]) + size_of_val(&blocks[..]);
         Self { nodes, blocks, items, bounds: bounds.into(), exceeds_cache: n_bytes > NEAR_CACHE_BYTES }
+    }
+
+    /// A tree without nodes that stands for another structure with this box.
+    pub(crate) fn placeholder(bounds: Bounds3) -> Self {
+        Self { bounds: bounds.into(), ..Self::default() }
     }
 
     /// Box around all primitives.
@@ -178,5 +182,10 @@ fn traverse_portably<'a>(bvh: &'a Bvh, ray: &Ray, t_max: f32, visitor: &mut impl
 /// The test of the leaves on a single triangle: t and the weights of the second and third vertex.
 pub(crate) fn intersect_triangle(ray: &Ray, triangle: &[[f32; 3]; 3]) -> Option<(f32, [f32; 2])> {
     let prepared = TraversalRay::new(&ray.into(), &Bounds3 { min: ray.origin, max: ray.origin }.into())?;
-    triangle_block::intersect(&prepared, triangle)
+    intersect_prepared(&prepared, triangle)
+}
+
+/// The same for a ray that is ready.
+pub(crate) fn intersect_prepared(ray: &TraversalRay, triangle: &[[f32; 3]; 3]) -> Option<(f32, [f32; 2])> {
+    triangle_block::intersect(ray, triangle)
 }

@@ -2,13 +2,14 @@
 
 use etendue_math::{Bounds3, Point2, Ray};
 
+use crate::accelerator::{Accelerator, Structures, Target};
 use crate::builder::WORLD;
 use crate::bvh::{Bvh, Kernel, PrimitiveRef, Verdict, Visitor, WideRay};
 use crate::hit::{GeometryId, Hit, NO_INSTANCE, SurfaceDerivatives, SurfacePoint};
 use crate::instance::Instance;
 use crate::mesh::heap;
 use crate::shape::entity::Entity;
-use crate::shape::resolve;
+use crate::shape::{entity_of, resolve};
 use crate::work::{Unnoted, Work};
 
 /// Everything that a ray can meet. Made by [`crate::GeometryBuilder`].
@@ -19,6 +20,8 @@ pub struct Geometry {
     pub(crate) entity_groups: Vec<u32>,
     /// Hierarchy of the world, then of each object.
     pub(crate) groups: Vec<Bvh>,
+    /// What takes the place of the hierarchies, which then know their boxes alone.
+    pub(crate) structures: Option<Structures>,
     pub(crate) instances: Vec<Instance>,
     kernel: Kernel,
 }
@@ -47,9 +50,16 @@ impl Geometry {
         entities: Vec<Entity>,
         entity_groups: Vec<u32>,
         groups: Vec<Bvh>,
+        structures: Option<Structures>,
         instances: Vec<Instance>,
     ) -> Self {
-        Self { entities, entity_groups, groups, instances, kernel: Kernel::detect() }
+        Self { entities, entity_groups, groups, structures, instances, kernel: Kernel::detect() }
+    }
+
+    /// What finds the hits.
+    #[must_use]
+    pub fn accelerator(&self) -> Accelerator {
+        self.structures.as_ref().map_or(Accelerator::Bvh, |structures| structures.accelerator)
     }
 
     /// The same geometry, traced without the instructions that only some processors have. For tests and
@@ -96,7 +106,10 @@ impl Geometry {
             work,
             best: None,
         };
-        self.kernel.traverse(&self.groups[WORLD as usize], ray, t_max.next_down(), &mut search);
+        match &self.structures {
+            None => self.kernel.traverse(&self.groups[WORLD as usize], ray, t_max.next_down(), &mut search),
+            Some(structures) => structures.search(ray, t_max.next_down(), &mut search),
+        }
         search.best
     }
 
@@ -157,10 +170,11 @@ impl Geometry {
         entities + instances + self.hierarchy_bytes() + heap(&self.entities) + heap(&self.instances)
     }
 
-    /// Bytes on the heap of the hierarchies alone.
+    /// Bytes on the heap of the hierarchies alone, or of what takes their place.
     #[must_use]
     pub fn hierarchy_bytes(&self) -> usize {
-        self.groups.iter().map(Bvh::memory_bytes).sum::<usize>() + heap(&self.groups)
+        let hierarchies = self.groups.iter().map(Bvh::memory_bytes).sum::<usize>() + heap(&self.groups);
+        hierarchies + self.structures.as_ref().map_or(0, Structures::memory_bytes)
     }
 
     /// How much there is.
@@ -169,7 +183,10 @@ impl Geometry {
         let mut counts = GeometryCounts {
             n_objects: self.groups.len() - 1,
             n_instances: self.instances.len(),
-            n_nodes: self.groups.iter().map(Bvh::n_nodes).sum(),
+            n_nodes: match &self.structures {
+                None => self.groups.iter().map(Bvh::n_nodes).sum(),
+                Some(structures) => structures.n_nodes(),
+            },
             ..GeometryCounts::default()
         };
         for entity in &self.entities {
@@ -221,9 +238,19 @@ impl<F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Search<'_, F, W, ANY> {
         Verdict::Shorten(hit.t)
     }
 
+    #[inline(always)]
+    fn enter_instance(&mut self, index: u32) -> (u32, WideRay) {
+        self.work.note_instance();
+        let instance = &self.geometry.instances[index as usize];
+        self.instance = index;
+        self.group_ray = instance.carried(self.world_ray);
+        (instance.group, self.group_ray)
+    }
+
     /// Tests a primitive that is no triangle.
     #[inline(never)]
     fn test_shape(&mut self, item: PrimitiveRef, t_max: f32) -> Verdict {
+        self.work.note_primitives(|| 1);
         let entity = &self.geometry.entities[item.geometry as usize];
         let ray = &self.group_ray.at(self.world_ray.time);
         if let Entity::Sphere(sphere) = entity {
@@ -272,11 +299,8 @@ impl<'a, F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Visitor<'a> for Search<'
 
     #[inline(always)]
     fn enter(&mut self, index: u32) -> (&'a Bvh, WideRay) {
-        self.work.note_instance();
-        let instance = &self.geometry.instances[index as usize];
-        self.instance = index;
-        self.group_ray = instance.carried(self.world_ray);
-        (&self.geometry.groups[instance.group as usize], self.group_ray)
+        let (group, ray) = self.enter_instance(index);
+        (&self.geometry.groups[group as usize], ray)
     }
 
     #[inline(always)]
@@ -291,7 +315,25 @@ impl<'a, F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Visitor<'a> for Search<'
     }
 
     #[inline(always)]
-    fn note_block(&mut self) {
+    fn note_block(&mut self, n_triangles: impl FnOnce() -> u32) {
         self.work.note_block();
+        self.work.note_primitives(n_triangles);
+    }
+}
+
+impl<'a, F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Target<'a> for Search<'a, F, W, ANY> {
+    #[inline]
+    fn corners(&self, triangle: PrimitiveRef) -> [[f32; 3]; 3] {
+        self.geometry.entities[entity_of(triangle)].triangle(triangle.primitive)
+    }
+
+    #[inline]
+    fn enter_group(&mut self, instance: u32) -> (u32, WideRay) {
+        self.enter_instance(instance)
+    }
+
+    #[inline]
+    fn note_triangle(&mut self) {
+        self.work.note_primitives(|| 1);
     }
 }

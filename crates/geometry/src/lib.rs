@@ -10,6 +10,7 @@ mod hit;
 mod mesh;
 mod shape;
 
+mod accelerator;
 mod builder;
 mod geometry;
 mod instance;
@@ -27,6 +28,7 @@ pub mod points;
 #[cfg(test)]
 mod test_support;
 
+pub use accelerator::{Accelerator, BinarySplit, DivisionSettings, GridSettings, KdTreeSettings};
 pub use builder::GeometryBuilder;
 pub use geometry::{Geometry, GeometryCounts};
 pub use hit::{

@@ -5,8 +5,9 @@ mod tests;
 
 use etendue_math::{Bounds3, Normal3, Point3};
 
+use crate::accelerator::Group;
 use crate::builder::{self, WORLD};
-use crate::bvh::{INSTANCE, PrimitiveRef};
+use crate::bvh::{self, Bvh, INSTANCE, PrimitiveRef};
 use crate::geometry::Geometry;
 use crate::hit::GeometryId;
 use crate::mesh::MeshError;
@@ -52,8 +53,12 @@ impl Geometry {
         Ok(())
     }
 
-    /// Refits a hierarchy, or builds it anew where it no longer fits; true if it did.
+    /// Refits a hierarchy, or builds it anew where it no longer fits; true if it did. Other structures are built anew.
     fn refit_group(&mut self, group: u32) -> bool {
+        if self.structures.is_some() {
+            self.build_group(group);
+            return false;
+        }
         let mut bvh = std::mem::take(&mut self.groups[group as usize]);
         let corners = |r: PrimitiveRef| self.entities[entity_of(r)].valid_triangle(r.primitive);
         let n_found = bvh.refit(&corners, &|item| {
@@ -76,8 +81,18 @@ impl Geometry {
     fn build_group(&mut self, group: u32) {
         let n_instances = if group == WORLD { self.instances.len() as u32 } else { 0 };
         let bounds = (0..n_instances).map(|index| self.instance_bounds(index));
-        let bvh = builder::build_group(&self.entities, &self.entity_groups, group, bounds);
-        self.groups[group as usize] = bvh;
+        let (entities, entity_groups) = (&self.entities[..], &self.entity_groups[..]);
+        let Some(accelerator) = self.structures.as_ref().map(|structures| structures.accelerator) else {
+            let bvh = builder::build_group(entities, entity_groups, group, bounds, bvh::build);
+            self.groups[group as usize] = bvh;
+            return;
+        };
+        let build = |own, source: &_| Group::build(own, source, &accelerator);
+        let new = builder::build_group(entities, entity_groups, group, bounds, build);
+        self.groups[group as usize] = Bvh::placeholder(new.bounds());
+        if let Some(structures) = &mut self.structures {
+            structures.groups[group as usize] = new;
+        }
     }
 
     fn instance_bounds(&self, index: u32) -> Option<Bounds3> {

@@ -9,10 +9,12 @@ use crate::geometry::Geometry;
 /// Steps of rays through the hierarchies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TraversalWork {
-    /// Nodes whose eight children were tested.
+    /// Nodes whose eight children were tested; of other structures, nodes and cells that were looked at.
     pub nodes: u64,
     /// Blocks of up to eight triangles that were tested.
     pub blocks: u64,
+    /// Triangles and other shapes that were tested, in blocks or alone.
+    pub primitives: u64,
     /// Instances that were entered.
     pub instances: u64,
 }
@@ -45,6 +47,7 @@ impl Geometry {
 pub(crate) trait Work: Copy {
     fn note_node(self);
     fn note_block(self);
+    fn note_primitives(self, n: impl FnOnce() -> u32);
     fn note_instance(self);
 }
 
@@ -58,6 +61,8 @@ impl Work for Unnoted {
     #[inline(always)]
     fn note_block(self) {}
     #[inline(always)]
+    fn note_primitives(self, _: impl FnOnce() -> u32) {}
+    #[inline(always)]
     fn note_instance(self) {}
 }
 
@@ -68,6 +73,10 @@ impl Work for &Cell<TraversalWork> {
 
     fn note_block(self) {
         self.update(|work| TraversalWork { blocks: work.blocks + 1, ..work });
+    }
+
+    fn note_primitives(self, n: impl FnOnce() -> u32) {
+        self.update(|work| TraversalWork { primitives: work.primitives + u64::from(n()), ..work });
     }
 
     fn note_instance(self) {
@@ -105,7 +114,9 @@ mod tests {
         let check = |geometry: &Geometry, hit: [u64; 3]| {
             let miss = TraversalWork { nodes: 1, ..TraversalWork::default() };
             let [nodes, blocks, instances] = hit;
-            for (x, expected) in [(0.2, TraversalWork { nodes, blocks, instances }), (7.0, miss)] {
+            for (x, expected) in
+                [(0.2, TraversalWork { nodes, blocks, primitives: blocks, instances }), (7.0, miss)]
+            {
                 assert_eq!(geometry.work_to_intersect(&[ray(x)], f32::INFINITY), expected);
                 assert_eq!(geometry.work_to_occlude(&[ray(x)], f32::INFINITY), expected);
             }

@@ -174,7 +174,7 @@ fn measure(model: &Model, settings: &SceneSizeSettings, clock: &dyn Fn() -> Dura
 
 fn ray_cost(set: &RaySet, geometry: &Geometry, n_rounds: u32, clock: &dyn Fn() -> Duration) -> RayCost {
     let n = set.rays.len() as f64;
-    let TraversalWork { nodes, blocks, instances } = set.work(geometry);
+    let TraversalWork { nodes, blocks, instances, .. } = set.work(geometry);
     let time_s = fastest(n_rounds, || {
         let start = clock();
         black_box(set.count_hits(geometry, 0..set.rays.len()));

@@ -57,6 +57,7 @@ fn lists_hold_what_scenes_name() {
         ("films", "rgb", "xresolution"),
         ("samplers", "stratified", "xsamples"),
         ("filters", "gaussian", "sigma"),
+        ("accelerators", "kdtree", "emptybonus"),
     ] {
         let json = folder.run(&format!("list {kind} --json")).expect(0).json();
         let items = json["items"].as_array().expect("a list");

@@ -33,7 +33,7 @@ impl WideRay {
 
 /// A box, whose fourth lanes are 0.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct WideBounds {
+pub(crate) struct WideBounds {
     min: Vec4,
     max: Vec4,
 }
@@ -59,14 +59,14 @@ impl Default for WideBounds {
 /// A ray made ready for slab tests and triangle tests.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TraversalRay {
-    pub(super) origin: [f32; 4],
-    pub(super) direction: [f32; 4],
+    pub(crate) origin: [f32; 4],
+    pub(crate) direction: [f32; 4],
     /// Reciprocal direction; infinite where the direction is 0.
-    pub(super) inverse: [f32; 4],
+    pub(crate) inverse: [f32; 4],
     /// The same for the planes where the ray leaves, widened.
-    pub(super) inverse_far: [f32; 4],
-    pub(super) near_origin: [f32; 4],
-    pub(super) far_origin: [f32; 4],
+    pub(crate) inverse_far: [f32; 4],
+    pub(crate) near_origin: [f32; 4],
+    pub(crate) far_origin: [f32; 4],
     /// Which of the six planes of a box the ray enters through and which it leaves through, per axis.
     pub(super) planes: &'static [[usize; 3]; 2],
     pub(super) shear: Shear,
@@ -84,11 +84,11 @@ pub(super) struct Shear {
 
 impl TraversalRay {
     /// Factor on the far end: three roundings on each side of the comparison and one of a product with the factor.
-    pub(super) const WIDEN: f32 = 1.0 + 4.0 * f32::EPSILON;
+    pub(crate) const WIDEN: f32 = 1.0 + 4.0 * f32::EPSILON;
 
     /// Prepares a ray for a tree with these bounds; `None` for rays that are not finite or have no direction.
     #[inline(always)]
-    pub(super) fn new(ray: &WideRay, bounds: &WideBounds) -> Option<Self> {
+    pub(crate) fn new(ray: &WideRay, bounds: &WideBounds) -> Option<Self> {
         let WideRay { origin, direction } = *ray;
         let reach = (bounds.max - origin).abs().max((bounds.min - origin).abs()).max_element();
         let step = Vec4::splat(5.0 * f32::EPSILON * reach).copysign(direction);

@@ -95,6 +95,8 @@ pub(super) fn traverse<'a, L: Lanes, V: Visitor<'a>>(
                 Items::Stop => return,
                 Items::Done => EMPTY,
                 Items::Instance(instance) => {
+                    // The stack has room for two trees.
+                    debug_assert!(std::ptr::eq(bvh, world), "an instance holds instances");
                     let (group, group_ray) = visitor.enter(instance);
                     match prepared(group, &group_ray) {
                         None => {
@@ -219,7 +221,7 @@ fn visit_triangles<'a, L: Lanes>(
 ) -> bool {
     let mut hits = Hits::NONE;
     for block in lanes.blocks(bvh, leaf) {
-        visitor.note_block();
+        visitor.note_block(|| block.n_triangles());
         let mut mask = block.intersect(lanes, ray, *end, &mut hits);
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize & 7;

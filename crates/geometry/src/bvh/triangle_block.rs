@@ -81,6 +81,11 @@ impl TriangleBlock {
         exists(&first.primitive).then_some(Pair { first, second })
     }
 
+    /// How many triangles it holds.
+    pub(super) fn n_triangles(&self) -> u32 {
+        self.primitive.iter().map(|primitive| u32::from(*primitive != u32::MAX)).sum()
+    }
+
     /// What a lane holds.
     #[inline(always)]
     pub(super) const fn reference(&self, lane: usize) -> PrimitiveRef {
@@ -221,6 +226,12 @@ impl Hits {
 
 /// The same test on a single triangle.
 pub(super) fn intersect(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> Option<TriangleHit> {
+    // Most triangles end here: the same edge functions as in the block, of which two have opposite signs.
+    let [a, b, c] = shear(ray, corners);
+    let edges = [(b, c), (c, a), (a, b)].map(|(p, q)| p[0] * q[1] - p[1] * q[0]);
+    if edges.iter().any(|e| *e < 0.0) && edges.iter().any(|e| *e > 0.0) {
+        return None;
+    }
     let mut block = TriangleBlock::EMPTY;
     block.set_triangle(0, 0, corners, 0);
     let mut hits = Hits::NONE;

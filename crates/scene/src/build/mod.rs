@@ -3,6 +3,7 @@
 //! Everything is looked at even after an error, so that all problems are reported together. The order follows who
 //! needs whom: textures, materials, shapes, geometry, lights, light sampler, camera and film.
 
+mod accelerator;
 mod camera;
 mod film;
 mod lights;
@@ -24,6 +25,7 @@ use crate::parameters::{BuildContext, ParameterSpec};
 use crate::scene::{Scene, ShapeAttributes};
 use crate::texture::Textures;
 
+pub use accelerator::ACCELERATORS;
 pub use film::{FILMS, SAMPLERS};
 pub use shapes::SHAPES;
 
@@ -71,7 +73,6 @@ impl Scene {
         let sampler = film::build_sampler(document, &mut builder.context);
         let filter = builder.build_filter();
         let camera = builder.build_camera(&film);
-        builder.check_accelerator();
         let lights = builder.build_lights(&geometry);
         // After an error it may be the light that is missing.
         let is_dark = lights.lights.is_empty() && !builder.materials.have_ambient();
@@ -134,7 +135,7 @@ impl Builder<'_, '_> {
                 geometry.add_instance(object, &instance.world_from_instance);
             }
         }
-        geometry.build()
+        geometry.build_with(accelerator::build_accelerator(document, &mut self.context))
     }
 
     fn find_object(
@@ -159,20 +160,6 @@ impl Builder<'_, '_> {
                     medium.name
                 ),
             );
-        }
-    }
-
-    fn check_accelerator(&mut self) {
-        let Some(entity) = &self.document.accelerator else { return };
-        match entity.type_name.as_str() {
-            "bvh" => {}
-            "kdtree" => {
-                let message = "the accelerator \"kdtree\" is not available yet; \"bvh\" stands in for it";
-                self.context.diagnostics.warning(entity.span, message);
-            }
-            unknown => {
-                self.context.diagnostics.unknown_name(entity.span, "accelerator", unknown, ["bvh", "kdtree"]);
-            }
         }
     }
 }

@@ -25,6 +25,23 @@ impl Box3 {
             max: std::array::from_fn(|axis| self.max[axis].max(other.max[axis])),
         }
     }
+
+    /// The lengths of its sides.
+    pub(crate) fn diagonal(&self) -> [f32; 3] {
+        std::array::from_fn(|axis| self.max[axis] - self.min[axis])
+    }
+
+    /// Half the surface area of a box that is not empty.
+    pub(crate) fn half_area(&self) -> f32 {
+        let [x, y, z] = self.diagonal();
+        x * y + y * z + z * x
+    }
+
+    /// The axis along which it is longest, of equals the first.
+    pub(crate) fn longest_axis(&self) -> usize {
+        let d = self.diagonal();
+        (1..3).fold(0, |longest, axis| if d[axis] > d[longest] { axis } else { longest })
+    }
 }
 
 impl From<Bounds3> for Box3 {
@@ -143,7 +160,7 @@ impl BuildPrimitive {
 
     /// What the primitive is; of a pair, the first triangle.
     #[inline]
-    pub(super) fn reference(&self) -> PrimitiveRef {
+    pub(crate) fn reference(&self) -> PrimitiveRef {
         let bits = |w: f32| w.to_bits() ^ PLAIN;
         PrimitiveRef {
             geometry: bits(self.bounds.min.w),
@@ -152,7 +169,7 @@ impl BuildPrimitive {
     }
 
     #[inline]
-    pub(super) fn is_triangle(&self) -> bool {
+    pub(crate) fn is_triangle(&self) -> bool {
         self.bounds.max.w.to_bits() & ITEM == 0
     }
 
@@ -160,6 +177,11 @@ impl BuildPrimitive {
     #[inline(always)]
     pub(super) const fn bounds(&self) -> &Box4 {
         &self.bounds
+    }
+
+    /// The box.
+    pub(crate) fn box3(&self) -> Box3 {
+        self.bounds.to_box3()
     }
 
     /// Twice the centre of the box.

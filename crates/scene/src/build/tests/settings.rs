@@ -5,6 +5,7 @@ use etendue_math::SamplerKind;
 use super::*;
 use crate::document::{CameraEntity, MediumEntity, Parameter};
 use crate::film::PixelBounds;
+use etendue_geometry::{Accelerator, KdTreeSettings};
 
 fn film(entity: Entity) -> Document {
     Document { film: Some(here(entity)), ..lit() }
@@ -113,10 +114,6 @@ fn known_but_missing_features_have_stand_ins() {
     let scene = warning_here(&camera(realistic), "the camera \"realistic\" is not available yet");
     assert!(matches!(scene.camera.projection(), crate::camera::Projection::Perspective(_)));
 
-    let accelerator = Some(here(Entity::new("kdtree").with("maxdepth", integers(&[8]))));
-    warning_here(&Document { accelerator, ..lit() }, "\"bvh\" stands in for it");
-    scene_of_bvh();
-
     let sensor = small().with("sensor", strings(&["canon_eos_5d"]));
     warning_here(&film(sensor), "\"cie1931\" stands in for it");
 
@@ -139,9 +136,29 @@ fn spectral_films_warn_of_bands() {
     let _ = scene(&Document { film: lit().film, ..with("bands") });
 }
 
-fn scene_of_bvh() {
-    let accelerator = Some(here(Entity::new("bvh").with("splitmethod", strings(&["hlbvh"]))));
-    let _ = scene(&Document { accelerator, ..lit() });
+/// Every structure can be chosen, and what it cannot be is said and mended.
+#[test]
+fn accelerators_are_chosen() {
+    let with = |entity: Entity| Document { accelerator: Some(here(entity)), ..lit() };
+    for (name, ..) in ACCELERATORS {
+        assert_eq!(scene(&with(Entity::new(name))).geometry.accelerator().name(), *name);
+    }
+    let check = |entity: Entity, expected: Accelerator, warning: &str| {
+        assert_eq!(warning_here(&with(entity), warning).geometry.accelerator(), expected);
+    };
+    let kd_tree = |name: &str, value: Value| Entity::new("kdtree").with(name, value);
+    let kd = KdTreeSettings::DEFAULT;
+    let deep = Accelerator::KdTree(KdTreeSettings { max_depth: Some(60), ..kd });
+    check(kd_tree("maxdepth", integers(&[61])), deep, "between 0 and 60, but is 61; 60 is taken");
+    let greedy = Accelerator::KdTree(KdTreeSettings { empty_bonus: 1.0, ..kd });
+    check(kd_tree("emptybonus", floats(&[7.0])), greedy, "but is 7; 1 is taken");
+    let fine = Entity::new("grid").with("density", floats(&[1e9]));
+    check(fine, Accelerator::Grid { density: 64.0 }, "but is 1000000000; 64 is taken");
+    assert_helps(
+        &error_here(&with(Entity::new("binarybvh").with("splitmethod", strings(&["shea"]))), "splitmethod"),
+        "did you mean \"sah\"?",
+    );
+    error_here(&with(kd_tree("maxdepth", integers(&[-7]))), "must not be negative");
 }
 
 /// A parameter that nobody asks for is ignored with a warning, so that scenes of other versions render.
@@ -161,13 +178,14 @@ fn unknown_parameters_are_warnings() {
     assert_eq!(help(mesh("smoothness")), "");
 }
 
-/// The tables of films and samplers list what is asked for: the documentation is made from them.
+/// The tables of films, samplers and accelerators list what is asked for: the documentation is made from them.
 #[test]
 fn tables_list_what_is_asked_for() {
     let value = |spec: &ParameterSpec| match (spec.name, spec.kind) {
         ("cropwindow", _) => floats(&[0.0, 1.0, 0.0, 1.0]),
         ("pixelbounds", _) => integers(&[0, 1, 0, 1]),
         ("sensor", _) => strings(&["cie1931"]),
+        ("splitmethod", _) => strings(&["sah"]),
         ("coordinatesystem", _) => strings(&["world"]),
         ("lambdamin" | "lambdamax", _) => floats(&[spec.default.parse().expect("a number")]),
         (_, "integer") => integers(&[3]),
@@ -185,5 +203,9 @@ fn tables_list_what_is_asked_for() {
     }
     for (name, specs) in SAMPLERS {
         let _ = scene(&sampler(entity(name, specs)));
+    }
+    for (name, _, specs) in ACCELERATORS {
+        let accelerator = Some(entity(name, specs));
+        let _ = scene(&Document { accelerator, ..lit() });
     }
 }
