@@ -9,7 +9,7 @@ use crate::hit::{GeometryId, Hit, NO_INSTANCE, SurfaceDerivatives, SurfacePoint}
 use crate::instance::Instance;
 use crate::mesh::heap;
 use crate::shape::entity::Entity;
-use crate::shape::{entity_of, resolve};
+use crate::shape::{Candidates, entity_of, resolve};
 use crate::work::{Unnoted, Work};
 
 /// Everything that a ray can meet. Made by [`crate::GeometryBuilder`].
@@ -35,7 +35,7 @@ pub struct GeometryCounts {
     pub n_triangles: usize,
     /// Bilinear patches stored.
     pub n_patches: usize,
-    /// Spheres, disks and cylinders.
+    /// Spheres, disks, cylinders and other shapes given by a short formula.
     pub n_quadrics: usize,
     /// Groups for instancing.
     pub n_objects: usize,
@@ -260,7 +260,18 @@ impl<F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Search<'_, F, W, ANY> {
                 (verdict, _) => verdict,
             };
         }
-        for candidate in entity.intersect(item.primitive, ray).into_iter().flatten() {
+        let candidates = entity.intersect(item.primitive, ray);
+        match (self.found_any(item, &candidates, t_max), candidates) {
+            // Refused or beyond the end; few shapes have more.
+            (Verdict::Pass, [_, Some(_)]) => self.found_any(item, &entity.intersect_further(ray), t_max),
+            (verdict, _) => verdict,
+        }
+    }
+
+    /// Considers hits of a primitive that is no triangle, in their order.
+    #[inline(always)]
+    fn found_any(&mut self, item: PrimitiveRef, candidates: &Candidates, t_max: f32) -> Verdict {
+        for candidate in candidates.iter().flatten() {
             let verdict = self.found(item, candidate.t, [candidate.u as f32, candidate.v as f32], t_max);
             if verdict != Verdict::Pass {
                 return verdict;

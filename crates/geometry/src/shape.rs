@@ -4,6 +4,7 @@
 //! `sample`), and its arm in every `match` that the compiler then reports in `entity.rs` (and, for shapes given by
 //! a formula, in `quadric.rs`).
 
+mod conic;
 mod cylinder;
 mod disk;
 pub(crate) mod entity;
@@ -12,6 +13,7 @@ mod patches;
 mod plane;
 mod quadric;
 mod sphere;
+mod torus;
 mod triangles;
 mod whole_sphere;
 
@@ -69,6 +71,51 @@ pub enum Shape {
         /// Largest azimuth in radians, 2 pi for all.
         phi_max_rad: f32,
     },
+    /// An open cone around the z axis.
+    Cone {
+        /// Radius at z = 0.
+        radius: f32,
+        /// z of the tip, not 0.
+        height: f32,
+        /// Largest azimuth in radians, 2 pi for all.
+        phi_max_rad: f32,
+    },
+    /// The elliptic paraboloid z = x²/a² + y²/b² (SPEC GEO-6), with z in [`z_min`, `z_max`].
+    Paraboloid {
+        /// Half axis along x at z = 1, positive.
+        a: f32,
+        /// Half axis along y at z = 1, positive.
+        b: f32,
+        /// Lower cut, 0 or below for none.
+        z_min: f32,
+        /// Upper end, positive.
+        z_max: f32,
+        /// Largest azimuth in radians, 2 pi for all; where a and b differ, before y is stretched by b / a.
+        phi_max_rad: f32,
+    },
+    /// What the segment from `p1` to `p2` describes as it turns about the z axis: a hyperboloid of one sheet, or where
+    /// the segment lies in a plane with the axis a cone, tube or ring.
+    Hyperboloid {
+        /// Where the segment begins.
+        p1: Point3,
+        /// Where it ends.
+        p2: Point3,
+        /// How far it turns, in radians, 2 pi for all.
+        phi_max_rad: f32,
+    },
+    /// A torus around the z axis.
+    Torus {
+        /// From the axis to the middle of the tube.
+        major_radius: f32,
+        /// Radius of the tube, at most the major one.
+        minor_radius: f32,
+        /// Where the tube's circle begins, in radians from its outermost point towards +z.
+        theta_min_rad: f32,
+        /// Where it ends, at most 2 pi further.
+        theta_max_rad: f32,
+        /// Largest azimuth in radians, 2 pi for all.
+        phi_max_rad: f32,
+    },
 }
 
 impl Shape {
@@ -83,7 +130,7 @@ impl Shape {
         match self {
             Self::Triangles(mesh) => mesh.validate(),
             Self::Bilinear(mesh) => mesh.validate(),
-            Self::Sphere { .. } | Self::Disk { .. } | Self::Cylinder { .. } => Ok(()),
+            _ => Ok(()),
         }
     }
 }

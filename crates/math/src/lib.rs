@@ -17,6 +17,7 @@ mod transform;
 mod alias;
 pub mod low_discrepancy;
 mod piecewise;
+pub mod polynomial;
 mod rng;
 mod sampler;
 pub mod statistics;

@@ -158,6 +158,23 @@ fn the_jacobian_of_sampling_is_one_over_the_density() {
     }
 }
 
+fn revolved() -> [Shape; 5] {
+    let phi_max_rad = 5.0;
+    [
+        Shape::Cone { radius: 0.8, height: 1.5, phi_max_rad },
+        Shape::Paraboloid { a: 0.9, b: 0.9, z_min: 0.0, z_max: 0.8, phi_max_rad },
+        Shape::Paraboloid { a: 0.9, b: 0.5, z_min: 0.1, z_max: 0.8, phi_max_rad },
+        Shape::Hyperboloid { p1: Point3::new(0.9, -0.3, -0.8), p2: Point3::new(0.4, 0.7, 0.9), phi_max_rad },
+        Shape::Torus {
+            major_radius: 0.8,
+            minor_radius: 0.3,
+            theta_min_rad: -1.0,
+            theta_max_rad: 2.0,
+            phi_max_rad,
+        },
+    ]
+}
+
 /// Points chosen by area: the integral of 1 / density is the area, and they lie on the surface.
 #[test]
 fn area_samples_integrate_the_area() {
@@ -173,7 +190,11 @@ fn area_samples_integrate_the_area() {
         (bent, Transform::IDENTITY),
         (disk(), stretched),
         (triangle(), stretched),
-    ] {
+    ]
+    .into_iter()
+    .chain(
+        revolved().into_iter().flat_map(|shape| [(shape.clone(), Transform::IDENTITY), (shape, stretched)]),
+    ) {
         let (geometry, id) = single(shape.clone(), transform, false);
         let mut rng = Rng::new(4, 0);
         let mut moments = Moments::default();

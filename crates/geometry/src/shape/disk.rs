@@ -28,6 +28,14 @@ impl Disk {
         }
     }
 
+    /// The ring that the segment between two points of equal z describes about z.
+    pub(crate) fn swept(p1: DVec3, p2: DVec3, phi_max: f64) -> Self {
+        let (p, d) = (p1.truncate(), (p2 - p1).truncate());
+        let nearest = (-p.dot(d) / d.length_squared()).clamp(0.0, 1.0);
+        let inner = if nearest.is_finite() { (p + d * nearest).length() } else { p.length() };
+        Self::new(p1.z, p.length().max(p2.truncate().length()), inner, phi_max)
+    }
+
     pub(crate) const fn bounds(&self) -> (DVec3, DVec3) {
         let r = self.radius;
         (DVec3::new(-r, -r, self.height), DVec3::new(r, r, self.height))

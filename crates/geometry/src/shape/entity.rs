@@ -1,15 +1,17 @@
 //! A shape in the space of its group, ready for intersection: one `match` per operation.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray, Transform, Vector3};
 
+use super::conic::Conic;
 use super::cylinder::Cylinder;
 use super::disk::Disk;
 use super::patches::{self, Patches};
 use super::quadric::{self, Quadric, QuadricShape};
 use super::sphere::Sphere;
+use super::torus::Torus;
 use super::triangles::Triangles;
 use super::whole_sphere::WholeSphere;
 use super::{Candidates, LocalSurface, Shape};
@@ -28,7 +30,7 @@ pub(crate) enum Entity {
     Patches(Patches),
     /// A whole sphere.
     Sphere(WholeSphere),
-    /// A stretched or cut sphere, disk or cylinder.
+    /// A stretched or cut sphere, or another shape given by a short formula.
     Quadric(Box<Quadric>),
 }
 
@@ -58,6 +60,31 @@ impl Entity {
             Shape::Cylinder { radius, z_min, z_max, phi_max_rad } => quadric(QuadricShape::Cylinder(
                 Cylinder::new(radius.into(), z_min.into(), z_max.into(), phi_max_rad.into()),
             )),
+            Shape::Cone { radius, height, phi_max_rad } => {
+                quadric(QuadricShape::Conic(Conic::cone(radius.into(), height.into(), phi_max_rad.into())))
+            }
+            Shape::Paraboloid { a, b, z_min, z_max, phi_max_rad } => {
+                let round = Conic::paraboloid(a.into(), z_min.into(), z_max.into(), phi_max_rad.into());
+                // An elliptic paraboloid is a round one, stretched.
+                let stretch = DAffine3::from_scale(DVec3::new(1.0, f64::from(b) / f64::from(a), 1.0));
+                let map = if a == b { map } else { map * stretch };
+                let shape = QuadricShape::Conic(round);
+                Self::Quadric(Box::new(Quadric::new(shape, map, reverse_orientation)))
+            }
+            Shape::Hyperboloid { p1, p2, phi_max_rad } => {
+                let (p1, p2, phi_max) = (double::point(p1), double::point(p2), phi_max_rad.into());
+                quadric(if p1.z == p2.z {
+                    QuadricShape::Disk(Disk::swept(p1, p2, phi_max))
+                } else {
+                    QuadricShape::Conic(Conic::hyperboloid(p1, p2, phi_max))
+                })
+            }
+            Shape::Torus { major_radius, minor_radius, theta_min_rad, theta_max_rad, phi_max_rad } => {
+                let theta = [theta_min_rad.into(), theta_max_rad.into()];
+                let radii = [major_radius.into(), minor_radius.into()];
+                let torus = Torus::new(radii[0], radii[1], theta[0], theta[1], phi_max_rad.into());
+                quadric(QuadricShape::Torus(torus))
+            }
         }
     }
 
@@ -161,6 +188,14 @@ impl Entity {
             Self::Patches(patches) => patches.intersect(primitive, ray),
             Self::Sphere(sphere) => sphere.intersect(ray),
             Self::Quadric(quadric) => quadric.intersect(ray),
+        }
+    }
+
+    /// The hits after the two of [`intersect`](Self::intersect), in order of t: tori are met up to four times.
+    pub(crate) fn intersect_further(&self, ray: &Ray) -> Candidates {
+        match self {
+            Self::Quadric(quadric) => quadric.intersect_further(ray),
+            _ => [None; 2],
         }
     }
 

@@ -1,12 +1,14 @@
-//! What spheres, disks and cylinders share: they are intersected and sampled in their own space in double
+//! What spheres, disks, cylinders, cones, paraboloids, hyperboloids and tori share: they are intersected and sampled in their own space in double
 //! precision, then carried to the space of the group by an affine map.
 
 use etendue_math::{Bounds3, Normal3, Point2, Ray};
 use glam::{DAffine3, DVec3};
 
+use super::conic::Conic;
 use super::cylinder::Cylinder;
 use super::disk::Disk;
 use super::sphere::Sphere;
+use super::torus::Torus;
 use super::{Candidates, LocalSurface};
 use crate::double::{self, NormalMap};
 use crate::hit::{ShapeSample, SurfaceDerivatives, SurfacePoint};
@@ -20,6 +22,10 @@ pub(crate) enum QuadricShape {
     Disk(Disk),
     /// See [`Cylinder`].
     Cylinder(Cylinder),
+    /// See [`Conic`].
+    Conic(Conic),
+    /// See [`Torus`].
+    Torus(Torus),
 }
 
 /// A point of a quadric in its own space.
@@ -50,6 +56,8 @@ impl QuadricShape {
             Self::Sphere(shape) => shape.bounds(),
             Self::Disk(shape) => shape.bounds(),
             Self::Cylinder(shape) => shape.bounds(),
+            Self::Conic(shape) => shape.bounds(),
+            Self::Torus(shape) => shape.bounds(),
         }
     }
 
@@ -58,6 +66,8 @@ impl QuadricShape {
             Self::Sphere(shape) => shape.intersect(origin, direction),
             Self::Disk(shape) => shape.intersect(origin, direction),
             Self::Cylinder(shape) => shape.intersect(origin, direction),
+            Self::Conic(shape) => shape.intersect(origin, direction),
+            Self::Torus(shape) => shape.intersect(origin, direction),
         }
     }
 
@@ -67,6 +77,8 @@ impl QuadricShape {
             Self::Sphere(shape) => shape.surface(p),
             Self::Disk(shape) => shape.surface(p),
             Self::Cylinder(shape) => shape.surface(p),
+            Self::Conic(shape) => shape.surface(p),
+            Self::Torus(shape) => shape.surface(p),
         }
     }
 
@@ -75,6 +87,8 @@ impl QuadricShape {
             Self::Sphere(shape) => shape.area(),
             Self::Disk(shape) => shape.area(),
             Self::Cylinder(shape) => shape.area(),
+            Self::Conic(shape) => shape.area(),
+            Self::Torus(shape) => shape.area(),
         }
     }
 
@@ -83,6 +97,8 @@ impl QuadricShape {
             Self::Sphere(shape) => shape.sample(u),
             Self::Disk(shape) => shape.sample(u),
             Self::Cylinder(shape) => shape.sample(u),
+            Self::Conic(shape) => shape.sample(u),
+            Self::Torus(shape) => shape.sample(u),
         }
     }
 }
@@ -156,9 +172,21 @@ impl Quadric {
 
     /// Up to two hits in order of t, with u and v.
     pub(crate) fn intersect(&self, ray: &Ray) -> Candidates {
-        let origin = self.shape_from_group.transform_point3(double::point(ray.origin));
-        let direction = self.shape_from_group.transform_vector3(double::vector(ray.direction));
+        let (origin, direction) = self.in_shape(ray);
         self.shape.intersect(origin, direction)
+    }
+
+    /// The hits after the first two.
+    pub(crate) fn intersect_further(&self, ray: &Ray) -> Candidates {
+        let QuadricShape::Torus(torus) = &self.shape else { return [None; 2] };
+        let (origin, direction) = self.in_shape(ray);
+        torus.intersect_further(origin, direction)
+    }
+
+    /// Origin and direction in the shape's own space.
+    fn in_shape(&self, ray: &Ray) -> (DVec3, DVec3) {
+        let origin = self.shape_from_group.transform_point3(double::point(ray.origin));
+        (origin, self.shape_from_group.transform_vector3(double::vector(ray.direction)))
     }
 
     /// Differential geometry where `ray` hits at `t`.
@@ -227,7 +255,10 @@ impl Quadric {
     pub(crate) fn emission_cone(&self) -> (Normal3, f32) {
         match &self.shape {
             QuadricShape::Disk(_) => (self.group_normal(DVec3::Z), 1.0),
-            QuadricShape::Sphere(_) | QuadricShape::Cylinder(_) => (Normal3::new(0.0, 0.0, 1.0), -1.0),
+            QuadricShape::Sphere(_)
+            | QuadricShape::Cylinder(_)
+            | QuadricShape::Conic(_)
+            | QuadricShape::Torus(_) => (Normal3::new(0.0, 0.0, 1.0), -1.0),
         }
     }
 }

@@ -1,3 +1,5 @@
+mod revolved;
+
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use etendue_math::{Normal3, Point2, Point3, Ray, Rng, Transform, Vector3, offset_ray_origin};

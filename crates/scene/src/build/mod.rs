@@ -6,6 +6,7 @@
 mod accelerator;
 mod camera;
 mod film;
+mod formulas;
 mod lights;
 mod materials;
 mod meshes;

@@ -8,6 +8,7 @@ use crate::parameters::{ParameterSpec, Parameters, spec};
 use crate::scene::ShapeAttributes;
 use crate::texture::FloatTexture;
 
+use super::formulas;
 use super::materials::DEFAULT_MATERIAL;
 use super::meshes::{
     MeshStore, read_bilinear_mesh, read_loop_subdivision, read_ply_mesh, read_triangle_mesh,
@@ -19,6 +20,11 @@ pub const SHAPES: &[(&str, &[ParameterSpec])] = &[
     ("sphere", SPHERE),
     ("disk", DISK),
     ("cylinder", CYLINDER),
+    ("cone", formulas::CONE),
+    ("paraboloid", formulas::PARABOLOID),
+    ("hyperboloid", formulas::HYPERBOLOID),
+    ("torus", formulas::TORUS),
+    ("plane", formulas::PLANE),
     ("trianglemesh", TRIANGLE_MESH),
     ("plymesh", PLY_MESH),
     ("bilinearmesh", BILINEAR_MESH),
@@ -28,14 +34,14 @@ pub const SHAPES: &[(&str, &[ParameterSpec])] = &[
 /// Shapes of pbrt-v4 that are left out with a warning.
 const MISSING_SHAPES: &[&str] = &["curve"];
 
-const ALPHA: ParameterSpec = spec(
+pub(super) const ALPHA: ParameterSpec = spec(
     "alpha",
     "float texture",
     "1",
     "",
     "share of rays that meet the surface; 0 makes an emissive surface an invisible light",
 );
-const PHI_MAX: ParameterSpec = spec("phimax", "float", "360", "degrees", "largest azimuth");
+pub(super) const PHI_MAX: ParameterSpec = spec("phimax", "float", "360", "degrees", "largest azimuth");
 const SPHERE: &[ParameterSpec] = &[
     spec("radius", "float", "1", "m", "radius"),
     spec("zmin", "float", "-radius", "m", "lower cut"),
@@ -189,6 +195,11 @@ fn read_shapes(p: &mut Parameters<'_, '_>, meshes: &mut MeshStore) -> Vec<Shape>
         "sphere" => vec![read_sphere(p)],
         "disk" => vec![read_disk(p)],
         "cylinder" => vec![read_cylinder(p)],
+        "cone" => vec![formulas::read_cone(p)],
+        "paraboloid" => vec![formulas::read_paraboloid(p)],
+        "hyperboloid" => vec![formulas::read_hyperboloid(p)],
+        "torus" => vec![formulas::read_torus(p)],
+        "plane" => vec![formulas::read_plane(p)],
         "trianglemesh" => read_triangle_mesh(p).map(Shape::Triangles).into_iter().collect(),
         "plymesh" => read_ply_mesh(p, meshes),
         "bilinearmesh" => read_bilinear_mesh(p).map(Shape::Bilinear).into_iter().collect(),
@@ -209,36 +220,37 @@ fn read_shapes(p: &mut Parameters<'_, '_>, meshes: &mut MeshStore) -> Vec<Shape>
     }
 }
 
-fn positive_radius(p: &mut Parameters<'_, '_>) -> f32 {
-    let radius = p.float("radius", 1.0);
-    if radius > 0.0 && radius.is_finite() {
-        return radius;
+/// A positive number with a default; others are reported.
+pub(super) fn positive(p: &mut Parameters<'_, '_>, name: &'static str, default: f32) -> f32 {
+    let value = p.float(name, default);
+    if value > 0.0 && value.is_finite() {
+        return value;
     }
-    let span = p.span_of("radius");
-    p.diagnostics().error(span, format!("\"radius\" must be positive, not {radius}"));
-    1.0
+    let span = p.span_of(name);
+    p.diagnostics().error(span, format!("\"{name}\" must be positive, not {value}"));
+    default
 }
 
-fn phi_max(p: &mut Parameters<'_, '_>) -> f32 {
+pub(super) fn phi_max(p: &mut Parameters<'_, '_>) -> f32 {
     p.float("phimax", 360.0).clamp(0.0, 360.0).to_radians()
 }
 
 fn read_sphere(p: &mut Parameters<'_, '_>) -> Shape {
-    let radius = positive_radius(p);
+    let radius = positive(p, "radius", 1.0);
     let z_min = p.float("zmin", -radius);
     let z_max = p.float("zmax", radius);
     Shape::Sphere { radius, z_min: z_min.min(z_max), z_max: z_max.max(z_min), phi_max_rad: phi_max(p) }
 }
 
 fn read_disk(p: &mut Parameters<'_, '_>) -> Shape {
-    let radius = positive_radius(p);
+    let radius = positive(p, "radius", 1.0);
     let height = p.float("height", 0.0);
     let inner_radius = p.float("innerradius", 0.0);
     Shape::Disk { height, radius, inner_radius, phi_max_rad: phi_max(p) }
 }
 
 fn read_cylinder(p: &mut Parameters<'_, '_>) -> Shape {
-    let radius = positive_radius(p);
+    let radius = positive(p, "radius", 1.0);
     let z_min = p.float("zmin", -1.0);
     let z_max = p.float("zmax", 1.0);
     Shape::Cylinder { radius, z_min: z_min.min(z_max), z_max: z_max.max(z_min), phi_max_rad: phi_max(p) }

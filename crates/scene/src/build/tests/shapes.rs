@@ -20,6 +20,12 @@ fn every_kind_of_shape() {
     check(Entity::new("sphere").with("radius", floats(&[2.0])), 1, [2.0; 3]);
     check(Entity::new("disk").with("height", floats(&[7.0])), 1, [1.0, 1.0, 0.0]);
     check(Entity::new("cylinder").with("zmax", floats(&[3.0])), 1, [1.0, 1.0, 2.0]);
+    check(Entity::new("cone").with("height", floats(&[3.0])), 1, [1.0, 1.0, 1.5]);
+    check(Entity::new("paraboloid").with("zmax", floats(&[4.0])), 1, [1.0, 1.0, 2.0]);
+    check(Entity::new("paraboloid").with("a", floats(&[2.0])).with("b", floats(&[0.5])), 1, [2.0, 0.5, 0.5]);
+    check(Entity::new("hyperboloid"), 1, [2.0_f32.sqrt(), 2.0_f32.sqrt(), 0.5]);
+    check(Entity::new("torus").with("minorradius", floats(&[0.5])), 1, [1.5, 1.5, 0.5]);
+    check(Entity::new("plane").with("extent", floats(&[3.0])).with("d", floats(&[7.0])), 1, [3.0, 3.0, 0.0]);
     check(square(), 2, [1.0, 1.0, 0.0]);
     let corners = points(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 2.0]]);
     check(Entity::new("bilinearmesh").with("P", corners), 1, [0.5, 0.5, 1.0]);
@@ -50,6 +56,10 @@ fn tables_list_what_is_asked_for() {
                 ("indices", _) if *name == "bilinearmesh" => integers(&[0, 1, 2, 3]),
                 ("indices", _) => integers(&[0, 1, 2]),
                 ("filename", _) => strings(&["a.ply"]),
+                ("p2", _) => points(&[[1.0, 1.0, 1.0]]),
+                (_, "point3") => points(&[[0.5, 0.0, 0.0]]),
+                (_, "vector3") => Value::Vectors3(vec![Vector3::new(1.0, 0.0, 0.0)]),
+                ("zmax" | "thetamax", _) => floats(&[0.75]),
                 (_, "integer") => integers(&[1]),
                 _ => floats(&[0.5]),
             };
