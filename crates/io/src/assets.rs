@@ -7,6 +7,7 @@ use std::sync::Arc;
 use etendue_image::Texels;
 use etendue_scene::bsdf::measured::MeasuredBrdf;
 use etendue_scene::bsdf::tabulated::BrdfGrid;
+use etendue_scene::camera::LensPrescription;
 use etendue_scene::document::{EmbeddedFile, Entity, ShapeEntity, Value};
 use etendue_scene::{Assets, Diagnostics, Document, LoadedMesh, Span};
 use etendue_spectrum::{known_but_missing, named_spectrum};
@@ -15,6 +16,7 @@ use rayon::prelude::*;
 use crate::brdf_table::read_brdf_table;
 use crate::file::read_file;
 use crate::images::{read_texels, read_texels_from};
+use crate::lens::read_lens;
 use crate::measured::read_measured;
 use crate::ply::read_ply;
 use crate::spd::read_spd;
@@ -30,6 +32,7 @@ enum Kind {
     Spectrum,
     Brdf,
     Measured,
+    Lens,
 }
 
 /// Files by kind and name, with the first parameter that names each.
@@ -43,12 +46,13 @@ enum Loaded {
     Spectrum(Vec<[f32; 2]>),
     Brdf(BrdfGrid),
     Measured(MeasuredBrdf),
+    Lens(LensPrescription),
 }
 
 /// Reads all files that parameters of the document name; what cannot be read is an error at the parameter.
 ///
 /// Known are the meshes of `plymesh`, the images of `imagemap` textures, of lights and of normal maps, measured
-/// spectra, the tables of `tabulated` and the measurements of `measured`. File names are relative to [`Document::base_directory`];
+/// spectra, the tables of `tabulated`, the measurements of `measured`, and the lenses of `realistic`. File names are relative to [`Document::base_directory`];
 /// names in [`Document::embedded`] stand for what the document brings along.
 #[must_use]
 pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
@@ -79,6 +83,9 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
             }
             Ok(Loaded::Measured(brdf)) => {
                 assets.measured.insert(name, Arc::new(brdf));
+            }
+            Ok(Loaded::Lens(lens)) => {
+                assets.lenses.insert(name, Arc::new(lens));
             }
             Err(message) => {
                 let error = diagnostics.error(span, message);
@@ -127,6 +134,7 @@ fn decode(kind: Kind, bytes: &[u8]) -> Result<Loaded, String> {
         }
         Kind::Brdf => read_brdf_table(bytes).map(Loaded::Brdf).map_err(|error| error.to_string()),
         Kind::Measured => read_measured(bytes).map(Loaded::Measured).map_err(|error| error.to_string()),
+        Kind::Lens => read_lens(bytes).map(Loaded::Lens).map_err(|error| error.to_string()),
         Kind::Spectrum | Kind::Image => {
             read_spd(bytes).map(Loaded::Spectrum).map_err(|error| error.to_string())
         }
@@ -164,6 +172,10 @@ fn wanted_files(document: &Document) -> Wanted {
         add_spectra(&mut wanted, &material.entity);
     }
     let camera = document.camera.as_ref().map(|camera| &camera.entity);
+    if let Some(camera) = camera.filter(|camera| camera.type_name == "realistic") {
+        add(&mut wanted, Kind::Lens, camera, "lensfile");
+        add_if(&mut wanted, Kind::Image, camera, "aperture", |name| name.contains('.'));
+    }
     let media = document.media.iter().map(|medium| &medium.entity);
     for entity in media.chain(camera).chain(&document.film) {
         add_spectra(&mut wanted, entity);
@@ -173,9 +185,14 @@ fn wanted_files(document: &Document) -> Wanted {
 
 /// The file that a string parameter of that name gives.
 fn add(wanted: &mut Wanted, kind: Kind, entity: &Entity, name: &str) {
+    add_if(wanted, kind, entity, name, |file| !file.is_empty());
+}
+
+/// The file that a string parameter of that name gives, if it looks like one.
+fn add_if(wanted: &mut Wanted, kind: Kind, entity: &Entity, name: &str, is_file: impl Fn(&str) -> bool) {
     for parameter in entity.parameters.iter().filter(|parameter| parameter.name == name) {
         let Value::Strings(files) = &parameter.value else { continue };
-        for file in files.iter().filter(|file| !file.is_empty()) {
+        for file in files.iter().filter(|file| is_file(file)) {
             wanted.entry((kind, file.clone())).or_insert(parameter.span);
         }
     }

@@ -11,6 +11,7 @@ use etendue_math::{Normal3, Point2, Point3};
 
 use crate::bsdf::measured::MeasuredBrdf;
 use crate::bsdf::tabulated::BrdfGrid;
+use crate::camera::LensPrescription;
 
 /// A mesh read from a file, in object space.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,6 +44,8 @@ pub struct Assets {
     pub brdfs: HashMap<String, BrdfGrid>,
     /// Measured BRDFs by file name.
     pub measured: HashMap<String, Arc<MeasuredBrdf>>,
+    /// Lenses by file name.
+    pub lenses: HashMap<String, Arc<LensPrescription>>,
     /// Names of files that could not be read. Whoever tried has said why, so that the scene builder need not.
     pub failed: HashSet<String>,
 }

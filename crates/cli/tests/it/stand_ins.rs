@@ -85,11 +85,9 @@ fn textures() {
     accept("", &world, "7:24", &["the texture \"ptex\"", "constant 0.5"]);
 }
 
-/// Cameras and sensors.
+/// Sensors.
 #[test]
 fn options() {
-    let lens = "Camera \"realistic\" \"string lensfile\" \"none.dat\" \"float aperturediameter\" 8 \"float focusdistance\" 3";
-    accept(lens, SPHERE, "4:8", &["\"perspective\" stands in for it"]);
     let film = "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6 \"string sensor\" \"canon_eos_5d_mkiv\"";
     accept(film, SPHERE, "4:60", &["\"cie1931\" stands in for it"]);
 }

@@ -13,22 +13,20 @@ use super::Builder;
 impl Builder<'_, '_> {
     pub(super) fn build_camera(&mut self, film: &FilmSettings) -> Camera {
         let fallback = Entity::new("perspective");
-        let (mut entity, world_from_camera) = match &self.document.camera {
+        let (entity, world_from_camera) = match &self.document.camera {
             Some(camera) => (camera.entity.clone(), camera.world_from_camera),
             None => (fallback, AnimatedTransform::constant(Transform::IDENTITY)),
         };
-        if entity.type_name == "realistic" {
-            let message = "the camera \"realistic\" is not available yet; \"perspective\" stands in for it";
-            self.context.diagnostics.warning(entity.span, message);
-            entity.type_name = "perspective".to_owned();
-            entity
-                .parameters
-                .retain(|p| matches!(p.name.as_str(), "shutteropen" | "shutterclose" | "focaldistance"));
-        }
         let corner = |p: [u32; 2]| Point2::new(p[0] as f32, p[1] as f32);
         let crop = Bounds2::new(corner(film.crop.min), corner(film.crop.max));
         let mut p = Parameters::new(&entity, &mut self.context);
-        let camera = Camera::from_parameters(&mut p, world_from_camera, film.resolution, crop);
+        let camera = Camera::from_parameters(
+            &mut p,
+            world_from_camera,
+            film.resolution,
+            film.diagonal_mm / 1000.0,
+            crop,
+        );
         p.finish();
         camera
     }

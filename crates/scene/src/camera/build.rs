@@ -1,6 +1,7 @@
 //! Cameras from parameters, with pbrt-v4's names and defaults.
 
 mod lens;
+mod realistic;
 
 use etendue_math::{AnimatedTransform, Bounds2};
 
@@ -14,6 +15,9 @@ use super::{
 use lens::{
     BLADE_ROTATION, BLADES, FOCAL_DISTANCE, FOCAL_LENGTH, FOV, FSTOP, LENS_RADIUS, SENSOR_WIDTH, read_lens,
     read_perspective,
+};
+use realistic::{
+    APERTURE, APERTURE_DIAMETER, FOCUS_DISTANCE, LENS_FILE, NORMALIZE, STOP_NUMBER, read_realistic,
 };
 
 const SHUTTER_OPEN: ParameterSpec = spec("shutteropen", "float", "0", "s", "when the film's exposure begins");
@@ -68,15 +72,32 @@ pub static CAMERAS: &[(&str, &[ParameterSpec])] = &[
         &[LENS_RADIUS, FOCAL_DISTANCE, BLADES, BLADE_ROTATION, ASPECT, WINDOW, SHUTTER_OPEN, SHUTTER_CLOSE],
     ),
     ("spherical", &[SPHERICAL_MAPPING, SHUTTER_OPEN, SHUTTER_CLOSE]),
+    (
+        "realistic",
+        &[
+            LENS_FILE,
+            APERTURE_DIAMETER,
+            STOP_NUMBER,
+            FOCUS_DISTANCE,
+            APERTURE,
+            BLADES,
+            BLADE_ROTATION,
+            NORMALIZE,
+            SHUTTER_OPEN,
+            SHUTTER_CLOSE,
+        ],
+    ),
     ("fisheye", &[FISHEYE_MAPPING, FISHEYE_FOV, ASPECT, WINDOW, SHUTTER_OPEN, SHUTTER_CLOSE]),
 ];
 
 impl Camera {
-    /// Reads a camera for a film of `resolution` pixels of which `crop` (pixels) is rendered; problems are reported.
+    /// Reads a camera for a film of `resolution` pixels and a diagonal in metres, of which `crop` (pixels) is rendered;
+    /// problems are reported.
     pub fn from_parameters(
         parameters: &mut Parameters<'_, '_>,
         world_from_camera: AnimatedTransform,
         resolution: [u32; 2],
+        diagonal_m: f32,
         crop: Bounds2,
     ) -> Self {
         let shutter = read_shutter(parameters);
@@ -88,6 +109,14 @@ impl Camera {
                 Projection::Orthographic(Orthographic { screen, lens: read_lens(parameters) })
             }
             "spherical" => Projection::Spherical(read_spherical(parameters, size)),
+            "realistic" => match read_realistic(parameters, size, diagonal_m) {
+                Some(camera) => Projection::Realistic(Box::new(camera)),
+                // Stands in after errors.
+                None => Projection::Spherical(Spherical {
+                    resolution: size,
+                    mapping: SphericalMapping::EqualArea,
+                }),
+            },
             "fisheye" => Projection::Fisheye(read_fisheye(parameters, size)),
             _ => {
                 if name != "perspective" {

@@ -49,6 +49,10 @@ impl MinimumDifferentials {
                 keep_shorter(&mut result.direction[axis], change);
             }
         }
+        if result.direction.contains(&Vector3::splat(f32::MAX)) {
+            // No ray met a neighbour: textures are not filtered.
+            return Self { origin: [Vector3::default(); 2], direction: [Vector3::default(); 2] };
+        }
         result
     }
 

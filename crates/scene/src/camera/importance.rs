@@ -129,7 +129,8 @@ fn towards(p: Point3) -> Option<(Ray, LensPoint)> {
 
 impl Camera {
     /// What the film receives along a ray that starts on the lens and has unit direction; `None` outside of the crop.
-    /// Rays of a parallel bundle without a lens cannot be met by chance: `None`.
+    /// Rays of a parallel bundle without a lens cannot be met by chance, and which way leads through a real lens is not known:
+    /// `None`.
     #[must_use]
     pub fn we(&self, ray: &Ray) -> Option<FilmImportance> {
         let mut ray_camera = self.transform_at(ray.time).inverse().ray(ray);
@@ -139,6 +140,7 @@ impl Camera {
             Projection::Orthographic(camera) => camera.film_importance(&ray_camera),
             Projection::Spherical(camera) => Some(camera.film_importance(&ray_camera)),
             Projection::Fisheye(camera) => camera.film_importance(&ray_camera),
+            Projection::Realistic(_) => None,
         };
         result.filter(|result| self.in_crop(result.p_film))
     }
@@ -170,6 +172,7 @@ impl Camera {
                 let (ray, lens) = towards(p_camera)?;
                 (lens, camera.film_importance(&ray)?)
             }
+            Projection::Realistic(_) => return None,
         };
         if !self.in_crop(film.p_film) {
             return None;
@@ -201,6 +204,7 @@ impl Camera {
             Projection::Orthographic(_) => return None,
             Projection::Spherical(camera) => camera.raster_from_direction(p.as_vector().try_normalized()?),
             Projection::Fisheye(camera) => camera.raster_from_direction(p.as_vector().try_normalized()?)?,
+            Projection::Realistic(_) => return None,
         };
         self.in_crop(p_film).then_some(p_film)
     }

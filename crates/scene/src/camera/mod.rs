@@ -12,6 +12,7 @@ mod lens;
 mod orthographic;
 mod perspective;
 mod photographic;
+mod realistic;
 
 mod screen;
 mod spherical;
@@ -29,6 +30,9 @@ pub use lens::{Blades, Lens, circle_of_confusion, field_of_view};
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
 pub use photographic::Photographic;
+pub use realistic::{
+    LensFault, LensPrescription, LensSettings, LensSurface, Paraxial, Realistic, StopPicture, StopShape,
+};
 pub use screen::{Screen, ScreenWindow};
 pub use spherical::{Spherical, SphericalMapping};
 
@@ -36,7 +40,7 @@ pub use spherical::{Spherical, SphericalMapping};
 ///
 /// To add one: a file with a plain struct that turns raster and lens positions into rays, a variant here, its arm in
 /// `Projection::ray`, in `importance.rs` and in `build.rs`, its parameters there, a line in the tests.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Projection {
     /// Pinhole or thin lens.
     Perspective(Perspective),
@@ -46,6 +50,8 @@ pub enum Projection {
     Spherical(Spherical),
     /// A cone of directions from a point, however wide.
     Fisheye(Fisheye),
+    /// A film behind a lens of glass.
+    Realistic(Box<Realistic>),
 }
 
 impl Projection {
@@ -57,6 +63,7 @@ impl Projection {
             Self::Orthographic(camera) => camera.ray(p_film, u_lens),
             Self::Spherical(camera) => camera.ray(p_film),
             Self::Fisheye(camera) => camera.ray(p_film)?,
+            Self::Realistic(camera) => return camera.ray(p_film, u_lens),
         };
         Some(CameraRay { ray, weight: 1.0 })
     }

@@ -12,6 +12,7 @@ use crate::parameters::{BuildContext, Parameters};
 
 mod fisheye;
 mod lens;
+mod realistic;
 
 const SIGNIFICANCE: f64 = 1e-5;
 const MIDDLE: Point2 = Point2::new(0.5, 0.5);
@@ -91,7 +92,7 @@ fn read(entity: &Entity, resolution: [u32; 2]) -> (Camera, usize) {
     let mut context = BuildContext::new(&assets);
     let mut parameters = Parameters::new(entity, &mut context);
     let fixed = AnimatedTransform::constant(Transform::IDENTITY);
-    let camera = Camera::from_parameters(&mut parameters, fixed, resolution, whole(resolution));
+    let camera = Camera::from_parameters(&mut parameters, fixed, resolution, 0.035, whole(resolution));
     parameters.finish();
     (camera, context.diagnostics.list().len())
 }
@@ -212,8 +213,8 @@ fn cam_3_small_apertures_approach_the_pinhole() {
         for _ in 0..50 {
             let u = rng.next_point2();
             let p_film = Point2::new(64.0 * u.x, 48.0 * u.y);
-            let a = camera(with, resolution).sample_ray(p_film, u, 0.0).unwrap().ray;
-            let b = camera(without, resolution).sample_ray(p_film, u, 0.0).unwrap().ray;
+            let a = camera(with.clone(), resolution).sample_ray(p_film, u, 0.0).unwrap().ray;
+            let b = camera(without.clone(), resolution).sample_ray(p_film, u, 0.0).unwrap().ray;
             assert!(a.origin.distance(b.origin) < 2e-5);
             assert!((a.direction - b.direction).length() < 2e-5);
         }
@@ -286,7 +287,7 @@ fn directions_have_their_density() {
 fn importance_is_the_density_of_rays() {
     let resolution = [40, 30];
     for (name, projection) in all_kinds(resolution) {
-        if matches!(projection, Projection::Orthographic(o) if !o.lens.has_area()) {
+        if matches!(&projection, Projection::Orthographic(o) if !o.lens.has_area()) {
             continue;
         }
         let is_point = is_point(&projection);

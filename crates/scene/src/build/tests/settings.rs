@@ -110,10 +110,6 @@ fn unknown_names_are_errors() {
 /// What pbrt-v4 knows and is missing here leaves a warning in its place, and a scene.
 #[test]
 fn known_but_missing_features_have_stand_ins() {
-    let realistic = here(Entity::new("realistic").with("lensfile", strings(&["wide.dat"])));
-    let scene = warning_here(&camera(realistic), "the camera \"realistic\" is not available yet");
-    assert!(matches!(scene.camera.projection(), crate::camera::Projection::Perspective(_)));
-
     let sensor = small().with("sensor", strings(&["canon_eos_5d"]));
     warning_here(&film(sensor), "\"cie1931\" stands in for it");
 
