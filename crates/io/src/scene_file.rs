@@ -7,6 +7,7 @@ use std::path::Path;
 use etendue_scene::{Diagnostics, Document};
 
 use crate::file::decompressed;
+use crate::mitsuba::read_mitsuba;
 use crate::pbrt::read_pbrt;
 
 #[cfg(test)]
@@ -51,7 +52,7 @@ pub fn read_scene(path: &Path) -> (Document, Diagnostics) {
     match format {
         Format::Pbrt => read_pbrt(path),
         Format::Gltf => unavailable(path, "glTF"),
-        Format::Mitsuba => unavailable(path, "Mitsuba XML"),
+        Format::Mitsuba => read_mitsuba(path),
         Format::Obj => unavailable(path, "OBJ"),
         Format::Ply => unavailable(path, "PLY as a scene"),
     }
