@@ -1,10 +1,11 @@
 //! Meshes in the Stanford polygon format (Turk 1994, "The PLY Polygon File Format"): ASCII and binary, also
 //! compressed by gzip. Written is the binary, little-endian form ([`write_ply`]).
 //!
-//! Read are the vertices' positions, normals and texture coordinates, and the faces with their `face_indices`; other
-//! properties and elements are skipped. Triangles stay, quadrilaterals become bilinear patches as in pbrt, larger
+//! Read are the vertices' positions, normals and texture coordinates, the faces with their `face_indices`, and further
+//! numbers of both as attributes; other elements are skipped. Triangles stay, quadrilaterals become bilinear patches as in pbrt, larger
 //! polygons are cut into fans. The header's counts are checked against the size of the file before memory is taken.
 
+mod attributes;
 mod body;
 mod header;
 mod write;
@@ -15,9 +16,10 @@ mod tests;
 use std::fmt;
 
 use etendue_math::{Normal3, Point2, Point3};
-use etendue_scene::LoadedMesh;
+use etendue_scene::{AttributeDomain, LoadedMesh};
 
 use crate::file::decompressed;
+use attributes::{Column, columns_of};
 use body::Body;
 use header::{Element, Header, PropertyKind};
 pub use write::write_ply;
@@ -97,6 +99,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<PlyMesh, PlyError> {
 struct Reader {
     ply: PlyMesh,
     quad_face_indices: Vec<i32>,
+    attributes: Vec<Column>,
     n_cut: usize,
     n_degenerate: usize,
     has_vertices: bool,
@@ -119,6 +122,7 @@ impl Reader {
             _ => None,
         };
         let uv = UV_NAMES.iter().find_map(|[u, v]| Some([column(u)?, column(v)?]));
+        let mut attributes = columns_of(element, AttributeDomain::Vertex);
         let mesh = &mut self.ply.mesh;
         mesh.positions.reserve_exact(element.count as usize);
         mesh.normals.reserve_exact(if normal.is_some() { element.count as usize } else { 0 });
@@ -138,7 +142,9 @@ impl Reader {
             if let Some([u, v]) = uv {
                 mesh.uvs.push(Point2::new(at(u), at(v)));
             }
+            attributes.iter_mut().for_each(|column| column.push(&row, 1));
         }
+        self.attributes.append(&mut attributes);
         Ok(())
     }
 
@@ -151,6 +157,7 @@ impl Reader {
         let Some(list) = list else { return Err(PlyError::Missing("face property `vertex_indices`")) };
         let face_index = element.scalar("face_indices");
         self.ply.mesh.triangles.reserve_exact(element.count as usize);
+        let mut attributes = columns_of(element, AttributeDomain::Face);
         let mut corners = Vec::with_capacity(4);
         let mut row = vec![0.0_f64; element.properties.len()];
         for index in 0..element.count {
@@ -162,7 +169,14 @@ impl Reader {
                 return Err(PlyError::BadIndex(index, *bad, n));
             }
             self.face(&corners, face_index.map(|column| row[column] as i32));
+            for column in &mut attributes {
+                match corners.len() {
+                    4 => column.push_quad(&row),
+                    n => column.push(&row, n.saturating_sub(2)),
+                }
+            }
         }
+        self.attributes.append(&mut attributes);
         Ok(())
     }
 
@@ -217,6 +231,7 @@ impl Reader {
             mesh.uvs.clear();
             warnings.push("the texture coordinates were left out, as some are not finite".to_owned());
         }
+        self.ply.mesh.attributes = self.attributes.into_iter().filter_map(Column::finish).collect();
         Ok(self.ply)
     }
 }

@@ -13,6 +13,28 @@ use crate::bsdf::measured::MeasuredBrdf;
 use crate::bsdf::tabulated::BrdfGrid;
 use crate::camera::LensPrescription;
 
+/// What a value of a mesh belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AttributeDomain {
+    /// The vertices.
+    Vertex,
+    /// The faces: triangles, then quads.
+    Face,
+}
+
+/// Values of a mesh beyond its shape, for the texture `meshattribute`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshAttribute {
+    /// `vertex_color` or `face_weight`: the domain, then the name.
+    pub name: String,
+    /// What the values belong to.
+    pub domain: AttributeDomain,
+    /// Numbers of a value; of more than three the first three count.
+    pub n_components: usize,
+    /// All numbers, value after value. Colours are linear, in sRGB's primaries.
+    pub values: Vec<f32>,
+}
+
 /// A mesh read from a file, in object space.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadedMesh {
@@ -29,6 +51,8 @@ pub struct LoadedMesh {
     pub uvs: Vec<Point2>,
     /// Face index of each triangle, then of each quad; empty if the file has none.
     pub face_indices: Vec<i32>,
+    /// Further values of vertices and faces.
+    pub attributes: Vec<MeshAttribute>,
 }
 
 /// Everything that was loaded for a document.

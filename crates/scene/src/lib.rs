@@ -22,7 +22,7 @@ pub mod filter;
 pub mod build;
 pub mod scene;
 
-pub use assets::{Assets, LoadedMesh};
+pub use assets::{Assets, AttributeDomain, LoadedMesh, MeshAttribute};
 pub use diagnostics::{Diagnostic, Diagnostics, Severity, Sources, Span};
 pub use document::Document;
 pub use film::Film;

@@ -12,7 +12,7 @@ use crate::filter::Filter;
 use crate::light::{Light, LightContext, LightId, LightPoint, LightSampler, LightTables};
 use crate::material::{MaterialContext, MaterialId, Materials};
 use crate::medium::MediumId;
-use crate::texture::{FloatTexture, TextureContext, Textures};
+use crate::texture::{FloatTexture, ShapePoint, TextureContext, Textures};
 
 /// What a scene knows of a shape beyond its geometry.
 #[derive(Clone, Copy, Debug)]
@@ -175,7 +175,7 @@ impl Scene {
             FloatTexture::Constant(alpha) => alpha,
             FloatTexture::Node(_) => {
                 let point = self.geometry.surface_point(ray, hit);
-                self.textures.eval_float(alpha, &TextureContext::at(&point))
+                self.textures.eval_float(alpha, &texture_context(&point, hit))
             }
         };
         if alpha >= 1.0 {
@@ -246,7 +246,8 @@ impl Scene {
         let (dpdx, dpdy) =
             self.camera.dpdx_dpdy(point.p, point.ng, surface.time, self.sampler.samples_per_pixel);
         let [dudx, dudy, dvdx, dvdy] = uv_differentials(&derivatives, dpdx, dpdy);
-        let texture = TextureContext { dpdx, dpdy, dudx, dudy, dvdx, dvdy, ..TextureContext::at(point) };
+        let texture =
+            TextureContext { dpdx, dpdy, dudx, dudy, dvdx, dvdy, ..texture_context(point, &surface.hit) };
         MaterialContext::new(texture, point, &derivatives, surface.wo)
     }
 
@@ -325,6 +326,12 @@ impl Scene {
         };
         if blocked { 0.0 } else { 1.0 }
     }
+}
+
+/// Where textures are evaluated, without changes per pixel.
+fn texture_context(point: &SurfacePoint, hit: &Hit) -> TextureContext {
+    let shape_point = ShapePoint { geometry: hit.geometry.0, primitive: hit.primitive, uv: hit.uv };
+    TextureContext { shape_point: Some(shape_point), ..TextureContext::at(point) }
 }
 
 /// Changes of u and v per pixel, from those of the position: the least-squares solution of

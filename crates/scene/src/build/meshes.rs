@@ -10,6 +10,7 @@ use crate::assets::LoadedMesh;
 use crate::diagnostics::Span;
 use crate::document::{ShapeEntity, Value};
 use crate::parameters::Parameters;
+use crate::texture::{AttributeId, Corners, MeshAttributes, ShapeAttribute};
 
 /// Loop subdivision multiplies faces by four at each step; more than this exhausts memory.
 const MAX_SUBDIVISION_LEVELS: i32 = 10;
@@ -18,6 +19,8 @@ const MAX_SUBDIVISION_LEVELS: i32 = 10;
 #[derive(Debug, Default)]
 pub(super) struct MeshStore {
     meshes: HashMap<String, (Arc<LoadedMesh>, usize)>,
+    /// Attributes of the shapes of the mesh that was read last, in their order; those that textures name.
+    pub(super) attributes: Vec<Vec<(AttributeId, ShapeAttribute)>>,
 }
 
 impl MeshStore {
@@ -34,7 +37,7 @@ impl MeshStore {
                 meshes.insert(name.to_owned(), (mesh, 1));
             }
         }
-        Self { meshes }
+        Self { meshes, attributes: Vec::new() }
     }
 
     fn take(&mut self, name: &str) -> Option<LoadedMesh> {
@@ -181,7 +184,11 @@ pub(super) fn read_loop_subdivision(p: &mut Parameters<'_, '_>) -> Option<Shape>
     Some(Shape::Triangles(loop_subdivide(&mesh, levels as u32)))
 }
 
-pub(super) fn read_ply_mesh(p: &mut Parameters<'_, '_>, meshes: &mut MeshStore) -> Vec<Shape> {
+pub(super) fn read_ply_mesh(
+    p: &mut Parameters<'_, '_>,
+    meshes: &mut MeshStore,
+    wanted: &MeshAttributes,
+) -> Vec<Shape> {
     if p.has("displacement") {
         let span = p.span_of("displacement");
         p.diagnostics().warning(span, "displacement is not available yet; \"displacement\" is ignored");
@@ -196,12 +203,30 @@ pub(super) fn read_ply_mesh(p: &mut Parameters<'_, '_>, meshes: &mut MeshStore) 
     let Some(mesh) = meshes.take(&name) else {
         return Vec::new();
     };
+    meshes.attributes = attributes_of_parts(&mesh, wanted);
     split_loaded_mesh(p, mesh)
+}
+
+/// Attributes of the shapes that [`split_loaded_mesh`] makes.
+fn attributes_of_parts(
+    mesh: &LoadedMesh,
+    wanted: &MeshAttributes,
+) -> Vec<Vec<(AttributeId, ShapeAttribute)>> {
+    let mut parts = Vec::new();
+    if !mesh.quads.is_empty() {
+        let corners = || Corners::Patches(mesh.quads.clone());
+        parts.push(wanted.of_shape(&mesh.attributes, corners, mesh.triangles.len()));
+    }
+    if !mesh.triangles.is_empty() {
+        let corners = || Corners::Triangles(mesh.triangles.clone());
+        parts.push(wanted.of_shape(&mesh.attributes, corners, 0));
+    }
+    parts
 }
 
 /// Triangles and quadrilaterals of a file as separate shapes.
 fn split_loaded_mesh(p: &mut Parameters<'_, '_>, mesh: LoadedMesh) -> Vec<Shape> {
-    let LoadedMesh { triangles, quads, positions, normals, uvs, mut face_indices } = mesh;
+    let LoadedMesh { triangles, quads, positions, normals, uvs, mut face_indices, attributes: _ } = mesh;
     let quad_faces = if face_indices.len() > triangles.len() {
         face_indices.split_off(triangles.len())
     } else {

@@ -74,6 +74,7 @@ impl Scene {
         let sampler = film::build_sampler(document, &mut builder.context);
         let filter = builder.build_filter();
         let camera = builder.build_camera(&film);
+        builder.report_missing_attributes();
         let lights = builder.build_lights(&geometry);
         // After an error it may be the light that is missing.
         let is_dark = lights.lights.is_empty() && !builder.materials.have_ambient();
@@ -150,6 +151,13 @@ impl Builder<'_, '_> {
             self.context.diagnostics.unknown_name(instance.span, "object", &instance.object, known);
         }
         found
+    }
+
+    fn report_missing_attributes(&mut self) {
+        for name in self.textures.mesh_attributes.missing() {
+            let message = format!("no mesh has the attribute \"{name}\"; the texture is 0 everywhere");
+            self.context.diagnostics.warning(None, message);
+        }
     }
 
     fn warn_of_media(&mut self) {

@@ -6,7 +6,7 @@ use crate::document::{MaterialReference, ShapeEntity};
 use crate::material::MaterialId;
 use crate::parameters::{ParameterSpec, Parameters, spec};
 use crate::scene::ShapeAttributes;
-use crate::texture::FloatTexture;
+use crate::texture::{FloatTexture, MeshAttributes};
 
 use super::formulas;
 use super::materials::DEFAULT_MATERIAL;
@@ -119,8 +119,9 @@ impl Builder<'_, '_> {
     ) {
         let mut p = Parameters::new(&entity.entity, &mut self.context);
         let alpha = p.float_texture_opt("alpha").filter(|alpha| *alpha != FloatTexture::Constant(1.0));
-        let shapes = read_shapes(&mut p, meshes);
+        let shapes = read_shapes(&mut p, meshes, &self.textures.mesh_attributes);
         p.finish();
+        let mut attributes = std::mem::take(&mut meshes.attributes).into_iter();
         if shapes.is_empty() {
             return;
         }
@@ -136,6 +137,7 @@ impl Builder<'_, '_> {
                 }
             };
             debug_assert_eq!(id.0 as usize, self.attributes.len());
+            self.textures.mesh_attributes.attach(id.0, attributes.next().unwrap_or_default());
             self.attributes.push(ShapeAttributes { material, alpha, lights: None });
             if let Some(area_light) = emits {
                 self.emitters.push(Emitter { geometry: id, area_light });
@@ -190,7 +192,11 @@ impl Builder<'_, '_> {
     }
 }
 
-fn read_shapes(p: &mut Parameters<'_, '_>, meshes: &mut MeshStore) -> Vec<Shape> {
+fn read_shapes(
+    p: &mut Parameters<'_, '_>,
+    meshes: &mut MeshStore,
+    attributes: &MeshAttributes,
+) -> Vec<Shape> {
     match p.entity().type_name.as_str() {
         "sphere" => vec![read_sphere(p)],
         "disk" => vec![read_disk(p)],
@@ -201,7 +207,7 @@ fn read_shapes(p: &mut Parameters<'_, '_>, meshes: &mut MeshStore) -> Vec<Shape>
         "torus" => vec![formulas::read_torus(p)],
         "plane" => vec![formulas::read_plane(p)],
         "trianglemesh" => read_triangle_mesh(p).map(Shape::Triangles).into_iter().collect(),
-        "plymesh" => read_ply_mesh(p, meshes),
+        "plymesh" => read_ply_mesh(p, meshes, attributes),
         "bilinearmesh" => read_bilinear_mesh(p).map(Shape::Bilinear).into_iter().collect(),
         "loopsubdiv" => read_loop_subdivision(p).into_iter().collect(),
         missing if MISSING_SHAPES.contains(&missing) => {

@@ -11,10 +11,12 @@ use crate::parameters::{BuildContext, ParameterSpec, Parameters, SpectrumRole};
 use super::noise::Octaves;
 use super::{
     Bilerp, CheckMapping, Checkerboard, DirectionMix, Dots, Fbm, FloatTexture, FloatTextureNode, ImageFilter,
-    ImageId, ImageOptions, ImageTexture, Mapping2, Mapping3, Marble, Mix, Scale, SpectrumImageTexture,
-    SpectrumTexture, SpectrumTextureNode, Textures, Uplift, Windy, WrapMode, Wrinkled,
+    ImageId, ImageOptions, ImageTexture, Mapping2, Mapping3, Marble, MeshAttributeTexture, Mix, Scale,
+    SpectrumImageTexture, SpectrumTexture, SpectrumTextureNode, Textures, Uplift, Windy, WrapMode, Wrinkled,
 };
-use super::{bilerp, checkerboard, constant, dots, fractal, image_texture, marble, mix, scale};
+use super::{
+    bilerp, checkerboard, constant, dots, fractal, image_texture, marble, mesh_attribute, mix, scale,
+};
 
 /// A kind's own parameters followed by those of its mapping.
 const fn mapped<const N: usize>(own: &[ParameterSpec]) -> [ParameterSpec; N] {
@@ -50,6 +52,7 @@ pub static FLOAT_TEXTURES: &[(&str, &[ParameterSpec])] = &[
     ("fbm", fractal::PARAMETERS),
     ("wrinkled", fractal::PARAMETERS),
     ("windy", fractal::WINDY_PARAMETERS),
+    ("meshattribute", mesh_attribute::PARAMETERS),
 ];
 
 /// Kinds of textures that yield spectra, with their parameters.
@@ -63,6 +66,7 @@ pub static SPECTRUM_TEXTURES: &[(&str, &[ParameterSpec])] = &[
     ("dots", &DOTS),
     ("imagemap", &IMAGE),
     ("marble", marble::PARAMETERS),
+    ("meshattribute", mesh_attribute::PARAMETERS),
 ];
 
 /// Levels of textures inside of each other. They are evaluated by recursion, so that there must be a limit.
@@ -172,6 +176,7 @@ impl Textures {
                 octaves: read_octaves(p),
             }),
             "windy" => FloatTextureNode::Windy(Windy { mapping: Mapping3::new(world_from_texture) }),
+            "meshattribute" => FloatTextureNode::MeshAttribute(self.read_mesh_attribute(p)),
             _ => {
                 report_unknown(p, "float", FLOAT_TEXTURES);
                 return FloatTexture::Constant(0.5);
@@ -228,12 +233,21 @@ impl Textures {
                 SpectrumTextureNode::Image(SpectrumImageTexture { texture, uplift })
             }
             "marble" => read_marble(p, world_from_texture),
+            "meshattribute" => {
+                let uplift = Uplift::in_color_space(role, ColorSpaceName::Srgb, &mut p.context.spectra);
+                SpectrumTextureNode::MeshAttribute(self.read_mesh_attribute(p), uplift)
+            }
             _ => {
                 report_unknown(p, "spectrum", SPECTRUM_TEXTURES);
                 return SpectrumTexture::Constant(Spectrum::Constant(0.5));
             }
         };
         self.add_spectrum(node)
+    }
+
+    fn read_mesh_attribute(&mut self, p: &mut Parameters<'_, '_>) -> MeshAttributeTexture {
+        let attribute = self.mesh_attributes.name(&p.string("name", "vertex_color"));
+        MeshAttributeTexture { attribute, scale: p.float("scale", 1.0) }
     }
 
     fn read_image(

@@ -4,6 +4,8 @@ use etendue_geometry::SurfacePoint;
 use etendue_math::{Normal3, Point2, Point3, Vector3};
 use etendue_spectrum::Spectrum;
 
+use super::ShapePoint;
+
 /// Index of a node in the arena of textures that yield numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FloatTextureId(pub u32);
@@ -75,6 +77,8 @@ pub struct TextureContext {
     pub dvdy: f32,
     /// Index of the face in the mesh as written by its author.
     pub face_index: i32,
+    /// The point of the shape, where it is known.
+    pub shape_point: Option<ShapePoint>,
 }
 
 impl TextureContext {

@@ -15,6 +15,7 @@ mod dots;
 mod fractal;
 mod image_texture;
 mod marble;
+mod mesh_attribute;
 mod mix;
 mod scale;
 
@@ -40,6 +41,9 @@ pub use image_map::{ImageFilter, ImageMap, ImageOptions, WrapMode};
 pub use image_texture::{ImageId, ImageTexture, SpectrumImageTexture};
 pub use mapping::{Coordinates2, Coordinates3, Mapping2, Mapping3};
 pub use marble::Marble;
+pub use mesh_attribute::{
+    AttributeId, Corners, MeshAttributeTexture, MeshAttributes, ShapeAttribute, ShapePoint,
+};
 pub use mix::{DirectionMix, Mix};
 pub use noise::{Octaves, noise};
 pub use scale::Scale;
@@ -72,6 +76,8 @@ pub enum FloatTextureNode {
     Windy(Windy),
     /// A picture.
     Image(ImageTexture),
+    /// What meshes have at their vertices or faces.
+    MeshAttribute(MeshAttributeTexture),
 }
 
 /// A texture that yields spectra.
@@ -93,6 +99,8 @@ pub enum SpectrumTextureNode {
     Marble(Marble, Uplift),
     /// A picture.
     Image(SpectrumImageTexture),
+    /// What meshes have at their vertices or faces, with the way from colours to spectra.
+    MeshAttribute(MeshAttributeTexture, Uplift),
 }
 
 /// A picture with the name of its file.
@@ -108,6 +116,8 @@ struct NamedImage {
 pub struct Textures {
     /// Tabulated spectra that any spectrum of the scene may refer to.
     pub spectra: SpectrumTables,
+    /// What textures show of the vertices and faces of meshes.
+    pub mesh_attributes: MeshAttributes,
     floats: Vec<FloatTextureNode>,
     spectrums: Vec<SpectrumTextureNode>,
     images: Vec<NamedImage>,
@@ -166,7 +176,9 @@ impl Textures {
     pub fn role(&self, texture: SpectrumTexture) -> Option<SpectrumRole> {
         let SpectrumTexture::Node(id) = texture else { return None };
         match self.spectrum_node(id) {
-            SpectrumTextureNode::Marble(_, uplift) => Some(uplift.role),
+            SpectrumTextureNode::Marble(_, uplift) | SpectrumTextureNode::MeshAttribute(_, uplift) => {
+                Some(uplift.role)
+            }
             SpectrumTextureNode::Image(image) => Some(image.role()),
             _ => None,
         }
@@ -204,6 +216,7 @@ impl Textures {
             FloatTextureNode::Wrinkled(node) => node.eval(ctx),
             FloatTextureNode::Windy(node) => node.eval(ctx),
             FloatTextureNode::Image(node) => node.eval_float(self.image(node.image), ctx),
+            FloatTextureNode::MeshAttribute(node) => node.eval_float(&self.mesh_attributes, ctx),
         }
     }
 
@@ -251,6 +264,9 @@ impl Textures {
             SpectrumTextureNode::Checkerboard(node) => blend(node.a, node.b, node.amount(ctx)),
             SpectrumTextureNode::Dots(node) => eval(node.select(ctx)),
             SpectrumTextureNode::Marble(node, uplift) => uplift.sample(node.rgb(ctx), &self.spectra, lambda),
+            SpectrumTextureNode::MeshAttribute(node, uplift) => {
+                uplift.sample(node.eval_rgb(&self.mesh_attributes, ctx), &self.spectra, lambda)
+            }
             SpectrumTextureNode::Image(node) => {
                 node.eval(self.image(node.texture.image), &self.spectra, ctx, lambda)
             }
