@@ -85,3 +85,50 @@ pub(super) fn append(mesh: &mut LoadedMesh, part: &LoadedMesh, place: &Transform
     mesh.uvs.extend(&part.uvs);
     mesh.triangles.extend(part.triangles.iter().map(|corners| corners.map(|i| i + first)));
 }
+
+/// Points on a smooth curve through the given ones, `n` from each to the next: Catmull and Rom's, centripetal
+/// (Yuksel, Schaefer and Keyser 2011), which has no loops. Points that are given twice make corners.
+pub(super) fn spline(points: &[[f32; 2]], n: u32) -> Vec<[f32; 2]> {
+    let at = |i: isize| points[i.clamp(0, points.len() as isize - 1) as usize];
+    let mut curve = Vec::new();
+    for i in 0..points.len() as isize - 1 {
+        let corners = [at(i - 1), at(i), at(i + 1), at(i + 2)];
+        if distance(corners[1], corners[2]) > 0.0 {
+            curve.extend((0..n).map(|k| centripetal(corners, k as f32 / n as f32)));
+        }
+    }
+    curve.extend(points.last());
+    curve
+}
+
+fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The curve between the second and the third point, by the pyramid of Barry and Goldman (1988).
+fn centripetal(points: [[f32; 2]; 4], t: f32) -> [f32; 2] {
+    let [a, b, c, d] = points;
+    // A point that is given twice has a knot of its own all the same.
+    let step = |p: [f32; 2], q: [f32; 2]| distance(p, q).sqrt().max(1e-6);
+    let t1 = step(a, b);
+    let t2 = t1 + step(b, c);
+    let t3 = t2 + step(c, d);
+    let t = t1 + t * (t2 - t1);
+    let mix = |p: [f32; 2], q: [f32; 2], t0: f32, t1: f32| {
+        let w = (t - t0) / (t1 - t0);
+        [p[0] + w * (q[0] - p[0]), p[1] + w * (q[1] - p[1])]
+    };
+    let (ab, bc, cd) = (mix(a, b, 0.0, t1), mix(b, c, t1, t2), mix(c, d, t2, t3));
+    mix(mix(ab, bc, 0.0, t2), mix(bc, cd, t1, t3), t1, t2)
+}
+
+/// Those triangles whose middle is inside, and the others. Both keep all vertices.
+pub(super) fn split(mesh: &LoadedMesh, is_inside: impl Fn(Point3) -> bool) -> (LoadedMesh, LoadedMesh) {
+    let middle = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|i| mesh.positions[i as usize].as_vector());
+        Point3::splat(0.0) + (a + b + c) / 3.0
+    };
+    let (inside, outside) = mesh.triangles.iter().partition(|corners| is_inside(middle(corners)));
+    let of = |triangles| LoadedMesh { triangles, ..mesh.clone() };
+    (of(inside), of(outside))
+}

@@ -7,9 +7,24 @@
 //! To add a scene: write `fn(&Settings) -> Files` in a file of its own and add a row to [`GENERATORS`].
 
 mod mesh;
+mod noise;
 mod settings;
 mod text;
 
+mod plants;
+mod sun;
+
+mod analytic;
+mod boxes;
+mod car;
+mod caustics;
+mod courtyard;
+mod depth_of_field;
+mod glass;
+mod interior;
+mod mountain;
+mod plan;
+mod rooms;
 mod shared;
 mod small_box;
 
@@ -71,8 +86,32 @@ impl Files {
 }
 
 /// All generators in the order of the specification.
-pub const GENERATORS: &[Generator] =
-    &[small_box::GENERATOR, shared::BOX, shared::CORNELL, shared::CYLINDER, shared::BALLS];
+pub const GENERATORS: &[Generator] = &[
+    small_box::GENERATOR,
+    shared::BOX,
+    shared::CORNELL,
+    rooms::CEILING_LAMP,
+    rooms::DOOR,
+    rooms::HOLES,
+    glass::WINEGLASS,
+    interior::GLOSSY_BALL,
+    interior::INTERIOR,
+    car::GENERATOR,
+    glass::WOOD_BALL,
+    boxes::FRACTAL,
+    boxes::WATER,
+    mountain::GENERATOR,
+    courtyard::GENERATOR,
+    caustics::RING,
+    caustics::PRISM,
+    shared::CYLINDER,
+    glass::LENS,
+    analytic::CORNER,
+    analytic::FURNACE,
+    depth_of_field::GENERATOR,
+    plan::GENERATOR,
+    shared::BALLS,
+];
 
 impl Generator {
     /// The generator of that name.

@@ -41,7 +41,7 @@ const FIRST: Version = Version {
     lamp: ([-1.9, 0.0, -3.0], 1e-4),
     emission: 120.0,
     eta: 1.9,
-    exposure_s: 4e6,
+    exposure_s: 2.5e6,
     axes: |right, down, near| [down, right, near],
 };
 
@@ -56,7 +56,7 @@ const LATER: Version = Version {
     lamp: ([0.0, 1.9, -3.0], 0.5),
     emission: 10_000.0,
     eta: 1.5,
-    exposure_s: 0.002,
+    exposure_s: 0.0013,
     axes: |right, down, near| [right, -down, near],
 };
 

@@ -72,3 +72,11 @@ pub(super) fn numbers(values: &[f32]) -> String {
     }
     text
 }
+
+/// A directive in a space of its own: its origin, the three axes as columns.
+pub(super) fn placed(origin: [f32; 3], x: [f32; 3], y: [f32; 3], z: [f32; 3], directive: &str) -> String {
+    let [x, y, z, origin] = [x, y, z, origin].map(|v| numbers(&v));
+    format!(
+        "AttributeBegin\n  ConcatTransform [ {x} 0  {y} 0  {z} 0  {origin} 1 ]\n  {directive}\nAttributeEnd\n"
+    )
+}
