@@ -39,10 +39,10 @@ pub(super) const WATER: Generator = Generator {
 };
 
 /// Materials, camera and film of the standard box.
-fn start(name: &str, exposure_s: f32, max_depth: u32) -> String {
+fn start(name: &str, look_at: &str, exposure_s: f32, max_depth: u32) -> String {
     let frame = Frame { name, resolution: [512, 512], exposure_s, samples: 256, max_depth }.text();
     format!(
-        r#"LookAt 0 0.9 -2.8   0 0.9 0   0 1 0
+        r#"LookAt {look_at}   0 1 0
 Camera "perspective" "float fov" [ 45 ]
 {frame}
 WorldBegin
@@ -98,7 +98,7 @@ Material "dielectric" "float eta" [ 1.5 ]
 {glass}
 {lamp}"#,
         stored = surface.triangles.len(),
-        start = start("fractal-box", 0.014, 16),
+        start = start("fractal-box", "0 0.9 -2.8   0 0.9 0", 0.014, 16),
         walls = [
             (
                 "white",
@@ -151,7 +151,7 @@ Material "dielectric" "float eta" [ 1.5 ] "float eta_exterior" [ 1.333 ] "rgb ab
 {glass}
 {lamp}"#,
         n = surface.triangles.len(),
-        start = start("water-box", 0.014, 24),
+        start = start("water-box", "0 1.45 -2.7   0 0.72 0", 0.014, 24),
         floor = level(0.0),
         ceiling = level(1.9),
         back = facing(1.0),

@@ -22,7 +22,7 @@ pub(super) const GENERATOR: Generator = Generator {
 fn generate(settings: &Settings) -> Files {
     let hour = settings.number("hour");
     let frame =
-        Frame { name: "courtyard", resolution: [800, 400], exposure_s: 0.00012, samples: 256, max_depth: 16 };
+        Frame { name: "courtyard", resolution: [800, 400], exposure_s: 0.00006, samples: 256, max_depth: 16 };
     let light = sun::light(sun::direction(hour));
     let mut posts = String::new();
     for (x, z) in [-5.0, 0.0, 5.0].into_iter().flat_map(|x| [(x, 4.2), (x, 9.0)]) {

@@ -28,7 +28,7 @@ fn generate(settings: &Settings) -> Files {
 }
 
 fn text(name: &str, stop: f32, focus: f32, focal_length: f32) -> String {
-    let frame = Frame { name, resolution: [640, 360], exposure_s: 0.004, samples: 256, max_depth: 8 };
+    let frame = Frame { name, resolution: [640, 360], exposure_s: 0.006, samples: 256, max_depth: 8 };
     let colors =
         ["0.7 0.2 0.12", "0.7 0.45 0.1", "0.55 0.6 0.15", "0.15 0.5 0.3", "0.15 0.35 0.6", "0.4 0.2 0.5"];
     let mut row = String::new();

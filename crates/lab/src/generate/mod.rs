@@ -18,9 +18,11 @@ mod analytic;
 mod boxes;
 mod car;
 mod caustics;
+mod cognac;
 mod courtyard;
 mod depth_of_field;
 mod glass;
+mod incident;
 mod interior;
 mod mountain;
 mod plan;
@@ -105,7 +107,11 @@ pub const GENERATORS: &[Generator] = &[
     caustics::RING,
     caustics::PRISM,
     shared::CYLINDER,
+    cognac::COGNAC,
+    cognac::CLOSEUP,
     glass::LENS,
+    cognac::PENUMBRA,
+    incident::GENERATOR,
     analytic::CORNER,
     analytic::FURNACE,
     depth_of_field::GENERATOR,

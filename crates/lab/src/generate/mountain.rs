@@ -48,7 +48,7 @@ impl Terrain {
             let (x, z) = (place(index % (n + 1)), place(index / (n + 1)));
             let away = ((z + 2200.0) / 2500.0).clamp(0.0, 1.0);
             // Flat meadows near the camera, hills around, and the peak.
-            260.0 * (0.15 + away) * fractal[index] + 500.0 * away * away + peak(x, z, seed)
+            260.0 * (0.15 + away) * fractal[index] + 350.0 * away * away + peak(x, z, seed)
         };
         Self { n, heights: (0..(n + 1) * (n + 1)).map(height).collect() }
     }
@@ -91,9 +91,9 @@ impl Terrain {
             let noise = fractal_noise([x / 160.0, z / 160.0], 5, seed + 9);
             let (height, slope) = (self.height(x, z) + 260.0 * noise, self.slope(x, z) + 0.3 * noise);
             let shade = 1.0 + 0.5 * fractal_noise([x / 30.0, z / 30.0], 3, seed + 20);
-            let color: [f32; 3] = if height > 1050.0 && slope < 1.35 {
+            let color: [f32; 3] = if height > 850.0 && slope < 1.3 {
                 [238.0, 242.0, 250.0]
-            } else if slope > 0.85 || height > 900.0 {
+            } else if slope > 0.85 || height > 800.0 {
                 [118.0 * shade, 108.0 * shade, 98.0 * shade]
             } else {
                 [96.0 * shade, 112.0 * shade, 52.0 * shade]
@@ -112,7 +112,7 @@ fn peak(x: f32, z: f32, seed: u32) -> f32 {
     let distance = (a.abs().powf(1.25) + b.abs().powf(1.25)).powf(0.8);
     let near = (1.0 - distance / 1500.0).max(0.0);
     let ridges = fractal_noise([x / 420.0, z / 420.0], 7, seed + 3).abs();
-    1500.0 * near.powf(1.55) + 700.0 * near.sqrt() * (0.35 - ridges) * near
+    1150.0 * near.powf(1.45) + 1100.0 * near * (1.15 - near) * (0.3 - ridges)
 }
 
 fn generate(settings: &Settings) -> Files {
@@ -133,7 +133,7 @@ fn generate(settings: &Settings) -> Files {
         samples: 64,
         max_depth: 6,
     };
-    let eye = terrain.height(EYE[0], EYE[1]) + 14.0;
+    let eye = terrain.height(EYE[0], EYE[1]) + 45.0;
     let text = format!(
         r#"# A mountain of the shape of the Little Matterhorn, at {time} (SPEC SCENE-14): {n_ground} triangles of terrain and {n_trees} trees,
 # {total} triangles in sight, of which {all_stored} are stored.
@@ -141,7 +141,7 @@ fn generate(settings: &Settings) -> Files {
 # Lengths are in metres; x grows to the right, y upwards, z into the picture. The terrain is 6 km wide.
 
 LookAt {x} {eye} {z}   120 {target} 700   0 1 0
-Camera "perspective" "float fov" [ 38 ]
+Camera "perspective" "float fov" [ 40 ]
 {frame}
 WorldBegin
 
@@ -157,7 +157,7 @@ Material "diffuse" "rgb reflectance" [ 0.06 0.12 0.045 ]
         all_stored = n_ground + stored,
         x = EYE[0],
         z = EYE[1],
-        target = eye + 560.0,
+        target = eye + 430.0,
         frame = frame.text(),
         light = sun::light(sun),
         objects = (1..=kinds.len())
@@ -181,7 +181,7 @@ fn trees(terrain: &Terrain, n: u32, seed: u32) -> String {
     // Places that no tree can stand on are few; the last resort is a tree on a rock.
     let mut patience = 40 * u64::from(n);
     while left > 0 {
-        let distance = 35.0 * 100.0_f32.powf(rng.next_f32());
+        let distance = 110.0 * 27.0_f32.powf(rng.next_f32());
         let angle = 1.2 * (rng.next_f32() - 0.5);
         let (x, z) = (EYE[0] + distance * angle.sin(), EYE[1] + distance * angle.cos());
         let [variation, turn, width] = [0; 3].map(|_| rng.next_f32());
@@ -189,7 +189,7 @@ fn trees(terrain: &Terrain, n: u32, seed: u32) -> String {
         let clearing = fractal_noise([x / 300.0, z / 300.0], 3, seed + 5)
             < -0.05 - 0.1 * (distance < 300.0) as u32 as f32;
         let height = terrain.height(x, z);
-        if patience > 0 && (clearing || height > 860.0 || terrain.slope(x, z) > 0.75) {
+        if patience > 0 && (clearing || height > 650.0 || terrain.slope(x, z) > 0.75) {
             continue;
         }
         let size = 10.0 + 12.0 * variation;

@@ -58,7 +58,7 @@ pub(super) fn fir(n_needles: u32, seed: u64) -> LoadedMesh {
                 let s = (k as f32 + rng.next_f32()) / n_needles as f32;
                 let spread = unit(&mut rng);
                 let needle = (along * 0.12 + spread * (0.12 * length + 0.012)) * (1.1 - 0.6 * s);
-                leaf(&mut mesh, start + along * s, needle, unit(&mut rng) * (0.25 * needle.length()));
+                leaf(&mut mesh, start + along * s, needle, unit(&mut rng) * (0.13 * needle.length()));
             }
         }
     }
