@@ -23,6 +23,7 @@ mod sigmoid;
 mod spectrum;
 mod tables;
 
+pub mod atmosphere;
 pub mod blackbody;
 pub mod cie;
 pub mod cmyk;
