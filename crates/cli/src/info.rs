@@ -104,10 +104,13 @@ const fn kind_name(light: &Light) -> &'static str {
         Light::Spot(_) => "spot",
         Light::Distant(_) => "distant",
         Light::Goniometric(_) => "goniometric",
+        Light::Ies(_) => "ies",
         Light::Projection(_) => "projection",
         Light::InfiniteConstant(_) => "infinite",
         Light::InfiniteImage(_) => "infinite image",
         Light::InfinitePortal(_) => "infinite portal",
+        Light::Sky(_) => "sky",
+        Light::Sun(_) => "sun",
         Light::Area(_) => "area",
     }
 }

@@ -9,12 +9,14 @@ use etendue_scene::bsdf::measured::MeasuredBrdf;
 use etendue_scene::bsdf::tabulated::BrdfGrid;
 use etendue_scene::camera::LensPrescription;
 use etendue_scene::document::{EmbeddedFile, Entity, ShapeEntity, Value};
+use etendue_scene::light::Photometry;
 use etendue_scene::{Assets, Diagnostics, Document, LoadedMesh, Span};
 use etendue_spectrum::{known_but_missing, named_spectrum};
 use rayon::prelude::*;
 
 use crate::brdf_table::read_brdf_table;
 use crate::file::read_file;
+use crate::ies::read_ies;
 use crate::images::{read_texels, read_texels_from};
 use crate::lens::read_lens;
 use crate::measured::read_measured;
@@ -33,6 +35,7 @@ enum Kind {
     Brdf,
     Measured,
     Lens,
+    Luminaire,
 }
 
 /// Files by kind and name, with the first parameter that names each.
@@ -47,13 +50,15 @@ enum Loaded {
     Brdf(BrdfGrid),
     Measured(MeasuredBrdf),
     Lens(LensPrescription),
+    Luminaire(Photometry),
 }
 
 /// Reads all files that parameters of the document name; what cannot be read is an error at the parameter.
 ///
 /// Known are the meshes of `plymesh`, the images of `imagemap` textures, of lights and of normal maps, measured
-/// spectra, the tables of `tabulated`, the measurements of `measured`, and the lenses of `realistic`. File names are relative to [`Document::base_directory`];
-/// names in [`Document::embedded`] stand for what the document brings along.
+/// spectra, the tables of `tabulated`, the measurements of `measured`, the lenses of `realistic` and the luminaires of `ies`.
+/// File names are relative to [`Document::base_directory`]; names in [`Document::embedded`] stand for what the document
+/// brings along.
 #[must_use]
 pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
     let wanted: Vec<_> = wanted_files(document).into_iter().collect();
@@ -86,6 +91,9 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
             }
             Ok(Loaded::Lens(lens)) => {
                 assets.lenses.insert(name, Arc::new(lens));
+            }
+            Ok(Loaded::Luminaire(photometry)) => {
+                assets.luminaires.insert(name, Arc::new(photometry));
             }
             Err(message) => {
                 let error = diagnostics.error(span, message);
@@ -138,6 +146,7 @@ fn decode(kind: Kind, bytes: &[u8]) -> Result<Loaded, String> {
         Kind::Spectrum | Kind::Image => {
             read_spd(bytes).map(Loaded::Spectrum).map_err(|error| error.to_string())
         }
+        Kind::Luminaire => read_ies(bytes).map(Loaded::Luminaire).map_err(|error| error.to_string()),
     }
 }
 
@@ -157,7 +166,8 @@ fn wanted_files(document: &Document) -> Wanted {
         add_spectra(&mut wanted, &texture.entity);
     }
     for light in document.lights.iter().map(|light| &light.entity).chain(&document.area_lights) {
-        add(&mut wanted, Kind::Image, light, "filename");
+        let kind = if light.type_name == "ies" { Kind::Luminaire } else { Kind::Image };
+        add(&mut wanted, kind, light, "filename");
         add_spectra(&mut wanted, light);
     }
     for material in &document.materials {

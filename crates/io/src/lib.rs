@@ -8,6 +8,7 @@ pub mod assets;
 pub mod brdf_table;
 pub mod checkpoint;
 pub mod error;
+pub mod ies;
 pub mod images;
 pub mod lens;
 pub mod measured;

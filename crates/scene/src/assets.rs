@@ -34,6 +34,7 @@ pub struct MeshAttribute {
     /// All numbers, value after value. Colours are linear, in sRGB's primaries.
     pub values: Vec<f32>,
 }
+use crate::light::Photometry;
 
 /// A mesh read from a file, in object space.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -70,6 +71,8 @@ pub struct Assets {
     pub measured: HashMap<String, Arc<MeasuredBrdf>>,
     /// Lenses by file name.
     pub lenses: HashMap<String, Arc<LensPrescription>>,
+    /// Measured luminaires by file name.
+    pub luminaires: HashMap<String, Arc<Photometry>>,
     /// Names of files that could not be read. Whoever tried has said why, so that the scene builder need not.
     pub failed: HashSet<String>,
 }

@@ -18,7 +18,7 @@ use etendue_spectrum::{Sampled, Spectrum, SpectrumTables, Wavelengths};
 use super::build::{self, spec};
 use super::{
     EmittedRay, LightBounds, LightContext, LightImage, LightImageId, LightPoint, LightPower, LightSample,
-    LightTables,
+    LightTables, Profile,
 };
 use crate::parameters::{ParameterSpec, Parameters};
 use crate::texture::{FloatTexture, TextureContext};
@@ -32,6 +32,8 @@ pub struct AreaEmissionId(pub u32);
 pub struct AreaEmission {
     /// Radiance, where there is no picture.
     radiance: Spectrum,
+    /// How radiance depends on direction; `None` for the same in all.
+    profile: Option<Profile>,
     /// Picture of radiance, and radiance where it is 1 in multiples of its illuminant.
     picture: Option<(LightImageId, f32)>,
     /// True if both sides emit.
@@ -52,6 +54,8 @@ impl AreaEmission {
         spec("twosided", "bool", "false", "", "true if both sides emit"),
         build::SCALE,
         spec("power", "float", "", "lm", "flux of the whole shape; replaces the size of L"),
+        spec("exponent", "float", "0", "", "radiance falls as this power of the cosine to the normal"),
+        spec("spreadangle", "float", "90", "degrees", "largest angle between the normal and what is emitted"),
         super::LightUnits::PARAMETER,
     ];
 
@@ -60,7 +64,7 @@ impl AreaEmission {
     pub fn uniform(radiance: Spectrum, two_sided: bool, spectra: &SpectrumTables) -> Self {
         let mean = LightPower::of(&radiance, spectra);
         let coverage = FloatTexture::Constant(1.0);
-        Self { radiance, picture: None, two_sided, mean, coverage, is_visible: true }
+        Self { radiance, profile: None, picture: None, two_sided, mean, coverage, is_visible: true }
     }
 
     /// Radiance from a picture, times `scale`.
@@ -115,16 +119,38 @@ impl AreaEmission {
             return Sampled::ZERO;
         }
         let Some((image, scale)) = self.picture else {
-            return self.radiance.sample(context.spectra, lambda);
+            return self.radiance.sample(context.spectra, lambda) * self.relative(ng, wo);
         };
         let uv = Point2::new(uv.x, 1.0 - uv.y);
+        let scale = scale * self.relative(ng, wo);
         context.tables.image(image).bilinear(uv, context.spectra, lambda) * scale
+    }
+
+    /// Radiance in a direction over that along the normal.
+    #[inline]
+    fn relative(&self, ng: Normal3, wo: Vector3) -> f32 {
+        self.profile.map_or(1.0, |profile| profile.relative(ng.dot_vector(wo).abs()))
+    }
+
+    /// A direction around +z in proportion to radiance times cosine.
+    fn sample_direction(&self, u: Point2) -> Vector3 {
+        self.profile.map_or_else(|| warp::sample_cosine_hemisphere(u), |profile| profile.sample(u))
+    }
+
+    /// Density per steradian of [`sample_direction`](Self::sample_direction).
+    fn direction_pdf(&self, cosine: f32) -> f32 {
+        self.profile.map_or_else(|| warp::cosine_hemisphere_pdf(cosine), |profile| profile.pdf_w(cosine))
+    }
+
+    /// Flux of one side per square metre where the radiance along the normal is 1.
+    fn projected_solid_angle(&self) -> f32 {
+        self.profile.map_or(PI, |profile| profile.projected_solid_angle())
     }
 
     /// Flux per square metre of surface, of one or both sides; textured alpha counts as 1.
     #[must_use]
     pub fn exitance(&self) -> LightPower {
-        self.mean * f64::from(self.sides() * PI * self.mean_coverage())
+        self.mean * f64::from(self.sides() * self.projected_solid_angle() * self.mean_coverage())
     }
 
     /// Share of the surface that emits; 1 for textures, whose mean is not known.
@@ -153,11 +179,13 @@ impl AreaEmission {
         let two_sided = p.bool("twosided", false);
         let power = p.float("power", -1.0);
         let sides = if two_sided { 2.0 } else { 1.0 };
-        let flux_per_radiance = PI * sides * area_m2;
+        let profile = Profile::read(p);
+        let flux_per_radiance =
+            profile.map_or(PI, |profile| profile.projected_solid_angle()) * sides * area_m2;
         if !p.has("filename") {
             let source = build::Source::read(p, "L");
             let radiance = source.spectrum(p, power, |l| l * f64::from(flux_per_radiance));
-            return Some(Self::uniform(radiance, two_sided, &p.context.spectra));
+            return Some(Self { profile, ..Self::uniform(radiance, two_sided, &p.context.spectra) });
         }
         if p.has("L") {
             let span = p.span_of("filename");
@@ -170,7 +198,7 @@ impl AreaEmission {
             LightImage::new(picture.width, picture.height, &picture.rgb, picture.space, picture.white);
         let scale = size.factor(p, &picture, power, image.mean(), flux_per_radiance);
         let id = tables.add_image(image);
-        Some(Self::pictured(id, tables.image(id), scale, two_sided, &p.context.spectra))
+        Some(Self { profile, ..Self::pictured(id, tables.image(id), scale, two_sided, &p.context.spectra) })
     }
 }
 
@@ -347,9 +375,9 @@ impl AreaLight {
             side = if u_direction.x < 0.5 { 1.0 } else { -1.0 };
             u_direction.x = (2.0 * u_direction.x).fract();
         }
-        let local = warp::sample_cosine_hemisphere(u_direction);
+        let local = emission.sample_direction(u_direction);
         let w = Frame::from_z(s.n.as_vector() * side).to_world(local);
-        let pdf_w = warp::cosine_hemisphere_pdf(local.z) / emission.sides();
+        let pdf_w = emission.direction_pdf(local.z) / emission.sides();
         let le = emission.le(context, s.n, s.uv, w, lambda) * emission.coverage(context, s.p, s.n, s.uv);
         (pdf_w > 0.0 && s.pdf_a > 0.0 && !le.is_black()).then(|| EmittedRay {
             ray: Ray::new(s.p, w),
@@ -369,7 +397,7 @@ impl AreaLight {
         let cosine = ng.dot_vector(ray.direction);
         let cosine = if emission.two_sided { cosine.abs() } else { cosine.max(0.0) };
         let area = self.area(context);
-        (1.0 / area, warp::cosine_hemisphere_pdf(cosine) / emission.sides())
+        (1.0 / area, emission.direction_pdf(cosine) / emission.sides())
     }
 
     pub(super) fn power(&self, context: &LightContext) -> LightPower {
@@ -386,7 +414,7 @@ impl AreaLight {
             bounds: self.flat_lamp().map_or_else(of_primitive, FlatLamp::bounds),
             w,
             cos_theta_o,
-            cos_theta_e: 0.0,
+            cos_theta_e: emission.profile.map_or(0.0, |profile| profile.cos_max()),
             intensity: (emission.mean.weight * f64::from(area * emission.mean_coverage())) as f32,
             two_sided: emission.two_sided,
         })

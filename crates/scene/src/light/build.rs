@@ -9,9 +9,10 @@ use etendue_spectrum::{ColorSpace, ColorSpaceName, Spectrum, SpectrumTables, Tab
 use super::emission::{LightPower, LightUnits, emitted, unit_factor};
 use super::image::weighted_mean;
 use super::{
-    AreaEmission, AreaEmissionId, DistantLight, GoniometricLight, GoniometricLightId, InfiniteConstantLight,
-    InfiniteImageLight, InfiniteImageLightId, InfinitePortalLight, InfinitePortalLightId, Light, LightTables,
-    PointLight, ProjectionLight, ProjectionLightId, SpotLight,
+    AreaEmission, AreaEmissionId, DistantLight, GoniometricLight, GoniometricLightId, IesLight, IesLightId,
+    InfiniteConstantLight, InfiniteImageLight, InfiniteImageLightId, InfinitePortalLight,
+    InfinitePortalLightId, Light, LightTables, PointLight, ProjectionLight, ProjectionLightId, SkyLightId,
+    SpotLight, sky::SkySettings,
 };
 use crate::document::{Entity, LightEntity};
 use crate::parameters::{BuildContext, ParameterSpec, Parameters, SpectrumRole};
@@ -41,23 +42,35 @@ pub enum LightKind {
     Distant,
     /// [`GoniometricLight`].
     Goniometric,
+    /// [`IesLight`].
+    Ies,
     /// [`ProjectionLight`].
     Projection,
     /// [`InfiniteConstantLight`], [`InfiniteImageLight`] or [`InfinitePortalLight`].
     Infinite,
+    /// [`SkyLight`](super::SkyLight).
+    Sky,
+    /// [`SunLight`](super::SunLight).
+    Sun,
+    /// Both.
+    SunSky,
     /// [`AreaEmission`], of `AreaLightSource`.
     Diffuse,
 }
 
 impl LightKind {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 11] = [
         Self::Point,
         Self::Spot,
         Self::Distant,
         Self::Goniometric,
+        Self::Ies,
         Self::Projection,
         Self::Infinite,
+        Self::Sky,
+        Self::Sun,
+        Self::SunSky,
         Self::Diffuse,
     ];
 
@@ -69,8 +82,12 @@ impl LightKind {
             Self::Spot => "spot",
             Self::Distant => "distant",
             Self::Goniometric => "goniometric",
+            Self::Ies => "ies",
             Self::Projection => "projection",
             Self::Infinite => "infinite",
+            Self::Sky => "sky",
+            Self::Sun => "sun",
+            Self::SunSky => "sunsky",
             Self::Diffuse => "diffuse",
         }
     }
@@ -83,8 +100,12 @@ impl LightKind {
             Self::Spot => "a point that emits into a cone with a soft edge",
             Self::Distant => "parallel light, as from the sun",
             Self::Goniometric => "a point with a picture of intensity over the sphere",
+            Self::Ies => "a luminaire with intensity measured by its maker (IES LM-63)",
             Self::Projection => "a point that projects a picture",
             Self::Infinite => "surroundings: constant, a picture, or seen through a portal",
+            Self::Sky => "a clear sky by haze and the place of the sun, without the sun's disc",
+            Self::Sun => "the sun's disc as seen through the air",
+            Self::SunSky => "sky and sun together",
             Self::Diffuse => "a surface with the same radiance in all directions (AreaLightSource)",
         }
     }
@@ -97,41 +118,71 @@ impl LightKind {
             Self::Spot => SpotLight::PARAMETERS,
             Self::Distant => DistantLight::PARAMETERS,
             Self::Goniometric => GoniometricLight::PARAMETERS,
+            Self::Ies => IesLight::PARAMETERS,
             Self::Projection => ProjectionLight::PARAMETERS,
             Self::Infinite => InfiniteConstantLight::PARAMETERS,
+            Self::Sky | Self::Sun | Self::SunSky => SkySettings::PARAMETERS,
             Self::Diffuse => AreaEmission::PARAMETERS,
         }
     }
 }
 
 impl LightTables {
-    /// The light of a `LightSource`; problems go to the context's diagnostics.
-    pub fn build_light(&mut self, entity: &LightEntity, context: &mut BuildContext) -> Option<Light> {
+    /// The lights of a `LightSource`: one, but sun and sky are two; problems go to the context's diagnostics.
+    pub fn build_light(&mut self, entity: &LightEntity, context: &mut BuildContext) -> Vec<Light> {
         let kinds = LightKind::ALL.into_iter().filter(|kind| *kind != LightKind::Diffuse);
-        let kind = find_kind(&entity.entity, "light", kinds, context)?;
+        let Some(kind) = find_kind(&entity.entity, "light", kinds, context) else { return Vec::new() };
         if entity.world_from_light.is_animated() {
             let text = "moving lights are not supported; the light stays where it starts";
             context.diagnostics.warning(entity.entity.span, text);
         }
         let transform = &entity.world_from_light.start;
         let mut p = Parameters::new(&entity.entity, context);
-        let light = match kind {
-            LightKind::Point => Some(Light::Point(PointLight::build(&mut p, transform))),
-            LightKind::Spot => SpotLight::build(&mut p, transform).map(Light::Spot),
-            LightKind::Distant => DistantLight::build(&mut p, transform).map(Light::Distant),
-            LightKind::Goniometric => GoniometricLight::build(&mut p, transform).map(|light| {
+        let lights = match kind {
+            LightKind::Sky | LightKind::Sun | LightKind::SunSky => self.build_sky(kind, &mut p, transform),
+            _ => self.build_single(kind, &mut p, transform).into_iter().collect(),
+        };
+        p.finish();
+        lights
+    }
+
+    fn build_single(&mut self, kind: LightKind, p: &mut Parameters, transform: &Transform) -> Option<Light> {
+        match kind {
+            LightKind::Point => Some(Light::Point(PointLight::build(p, transform))),
+            LightKind::Spot => SpotLight::build(p, transform).map(Light::Spot),
+            LightKind::Distant => DistantLight::build(p, transform).map(Light::Distant),
+            LightKind::Goniometric => GoniometricLight::build(p, transform).map(|light| {
                 self.goniometric.push(light);
                 Light::Goniometric(GoniometricLightId(self.goniometric.len() as u32 - 1))
             }),
-            LightKind::Projection => ProjectionLight::build(&mut p, transform, self).map(|light| {
+            LightKind::Ies => IesLight::build(p, transform).map(|light| {
+                self.luminaires.push(light);
+                Light::Ies(IesLightId(self.luminaires.len() as u32 - 1))
+            }),
+            LightKind::Projection => ProjectionLight::build(p, transform, self).map(|light| {
                 self.projections.push(light);
                 Light::Projection(ProjectionLightId(self.projections.len() as u32 - 1))
             }),
-            LightKind::Infinite => self.build_infinite(&mut p, transform),
-            LightKind::Diffuse => unreachable!("an area light is no light source"),
-        };
-        p.finish();
-        light
+            LightKind::Infinite => self.build_infinite(p, transform),
+            LightKind::Sky | LightKind::Sun | LightKind::SunSky | LightKind::Diffuse => {
+                unreachable!("these are no single light source")
+            }
+        }
+    }
+
+    fn build_sky(&mut self, kind: LightKind, p: &mut Parameters, transform: &Transform) -> Vec<Light> {
+        let Some(settings) = SkySettings::read(p, transform) else { return Vec::new() };
+        let mut lights = Vec::new();
+        if kind != LightKind::Sun
+            && let Some(sky) = settings.sky(p)
+        {
+            self.skies.push(sky);
+            lights.push(Light::Sky(SkyLightId(self.skies.len() as u32 - 1)));
+        }
+        if kind != LightKind::Sky {
+            lights.extend(settings.sun(p).map(Light::Sun));
+        }
+        lights
     }
 
     fn build_infinite(&mut self, p: &mut Parameters, transform: &Transform) -> Option<Light> {
@@ -228,7 +279,7 @@ fn read_scale(p: &mut Parameters) -> (f32, LightUnits) {
 }
 
 /// The white of the colour space that was current at the light.
-fn default_illuminant(p: &mut Parameters) -> Spectrum {
+pub(super) fn default_illuminant(p: &mut Parameters) -> Spectrum {
     let space = p.entity().parameters.first().map_or(ColorSpaceName::Srgb, |parameter| parameter.color_space);
     let table = p.context.spectra.illuminant(space);
     Spectrum::table(table, &p.context.spectra)

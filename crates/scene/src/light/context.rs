@@ -7,8 +7,8 @@ use etendue_spectrum::{Sampled, SpectrumTables};
 use crate::texture::Textures;
 
 use super::{
-    AreaEmission, GoniometricLight, InfiniteImageLight, InfinitePortalLight, LightImage, LightImageId,
-    ProjectionLight,
+    AreaEmission, GoniometricLight, IesLight, InfiniteImageLight, InfinitePortalLight, LightImage,
+    LightImageId, ProjectionLight, SkyLight,
 };
 
 /// A sphere around the scene: lights at infinity shine on its cross-section.
@@ -60,12 +60,16 @@ pub struct LightTables {
     pub images: Vec<LightImage>,
     /// Point lights with a picture of intensity.
     pub goniometric: Vec<GoniometricLight>,
+    /// Luminaires.
+    pub luminaires: Vec<IesLight>,
     /// Projectors.
     pub projections: Vec<ProjectionLight>,
     /// Pictures of the surroundings.
     pub environments: Vec<InfiniteImageLight>,
     /// Surroundings seen through openings.
     pub portals: Vec<InfinitePortalLight>,
+    /// Skies.
+    pub skies: Vec<SkyLight>,
     /// What emissive surfaces emit, shared by their primitives.
     pub emissions: Vec<AreaEmission>,
     /// The sphere around the scene; to be set before any light at infinity is used.

@@ -28,15 +28,19 @@
 mod context;
 pub mod emission;
 mod image;
+mod photometry;
+mod profile;
 
 mod area;
 mod distant;
 mod goniometric;
+mod ies;
 mod infinite_constant;
 mod infinite_image;
 mod infinite_portal;
 mod point;
 mod projection;
+pub mod sky;
 mod spot;
 
 mod bounds;
@@ -52,13 +56,17 @@ pub use context::{EmittedRay, LightContext, LightPoint, LightSample, LightTables
 pub use distant::DistantLight;
 pub use emission::{LightPower, LightUnits};
 pub use goniometric::{GoniometricLight, GoniometricLightId};
+pub use ies::{IesLight, IesLightId};
 pub use image::{LightImage, LightImageId};
 pub use infinite_constant::InfiniteConstantLight;
 pub use infinite_image::{InfiniteImageLight, InfiniteImageLightId};
 pub use infinite_portal::{InfinitePortalLight, InfinitePortalLightId, PortalError};
+pub use photometry::{PhotometricWeb, Photometry};
 pub use point::PointLight;
+pub use profile::{Profile, sample_by_rejection};
 pub use projection::{ProjectionLight, ProjectionLightId};
 pub use sampler::{LightSampler, LightSamplerKind};
+pub use sky::{SkyLight, SkyLightId, SunLight};
 pub use spot::SpotLight;
 pub use tree::LightTree;
 
@@ -84,6 +92,8 @@ pub enum Light {
     Distant(DistantLight),
     /// A point with a picture of intensity over the sphere.
     Goniometric(GoniometricLightId),
+    /// A point with measured intensity.
+    Ies(IesLightId),
     /// A point that projects a picture.
     Projection(ProjectionLightId),
     /// The same radiance from all directions.
@@ -92,6 +102,10 @@ pub enum Light {
     InfiniteImage(InfiniteImageLightId),
     /// A picture of radiance seen through a rectangular opening.
     InfinitePortal(InfinitePortalLightId),
+    /// The sky of a clear day, and the ground.
+    Sky(SkyLightId),
+    /// The sun's disc.
+    Sun(SunLight),
     /// One primitive of an emissive shape.
     Area(AreaLight),
 }
@@ -107,6 +121,10 @@ macro_rules! dispatch {
                 let $it = &$context.tables.goniometric[id.0 as usize];
                 $call
             }
+            Light::Ies(id) => {
+                let $it = &$context.tables.luminaires[id.0 as usize];
+                $call
+            }
             Light::Projection(id) => {
                 let $it = &$context.tables.projections[id.0 as usize];
                 $call
@@ -120,6 +138,11 @@ macro_rules! dispatch {
                 let $it = &$context.tables.portals[id.0 as usize];
                 $call
             }
+            Light::Sky(id) => {
+                let $it = &$context.tables.skies[id.0 as usize];
+                $call
+            }
+            Light::Sun($it) => $call,
             Light::Area($it) => $call,
         }
     };
@@ -181,6 +204,8 @@ impl Light {
             Self::InfinitePortal(id) => {
                 context.tables.portals[id.0 as usize].le(context, origin, direction, lambda)
             }
+            Self::Sky(id) => context.tables.skies[id.0 as usize].le(context, direction, lambda),
+            Self::Sun(light) => light.le(context, direction, lambda),
             _ => Sampled::ZERO,
         }
     }
@@ -242,8 +267,13 @@ impl Light {
             | Self::Spot(_)
             | Self::Distant(_)
             | Self::Goniometric(_)
+            | Self::Ies(_)
             | Self::Projection(_) => true,
-            Self::InfiniteConstant(_) | Self::InfiniteImage(_) | Self::InfinitePortal(_) => false,
+            Self::InfiniteConstant(_)
+            | Self::InfiniteImage(_)
+            | Self::InfinitePortal(_)
+            | Self::Sky(_)
+            | Self::Sun(_) => false,
             Self::Area(light) => !light.is_visible(),
         }
     }
@@ -253,7 +283,12 @@ impl Light {
     pub const fn is_infinite(&self) -> bool {
         matches!(
             self,
-            Self::Distant(_) | Self::InfiniteConstant(_) | Self::InfiniteImage(_) | Self::InfinitePortal(_)
+            Self::Distant(_)
+                | Self::InfiniteConstant(_)
+                | Self::InfiniteImage(_)
+                | Self::InfinitePortal(_)
+                | Self::Sky(_)
+                | Self::Sun(_)
         )
     }
 

@@ -4,6 +4,7 @@ mod area;
 mod bands;
 mod build;
 mod fields;
+mod luminaire;
 mod sampler;
 mod units;
 
@@ -24,18 +25,22 @@ use crate::texture::{FloatTexture, Textures};
 const SIGNIFICANCE: f64 = 1e-5;
 
 /// Everything that a light refers to, owned.
-struct World {
+pub(super) struct World {
     geometry: Geometry,
     textures: Textures,
     spectra: SpectrumTables,
-    tables: LightTables,
-    lights: Vec<Light>,
-    diagnostics: Diagnostics,
+    pub(super) tables: LightTables,
+    pub(super) lights: Vec<Light>,
+    pub(super) diagnostics: Diagnostics,
 }
 
 impl World {
     /// Lights from entities, over shapes of which each emits by the entity beside it.
-    fn new(entities: &[LightEntity], shapes: Vec<(Shape, Transform, Entity)>, assets: &Assets) -> Self {
+    pub(super) fn new(
+        entities: &[LightEntity],
+        shapes: Vec<(Shape, Transform, Entity)>,
+        assets: &Assets,
+    ) -> Self {
         let mut builder = GeometryBuilder::new();
         let mut emissive = Vec::new();
         for (shape, transform, entity) in shapes {
@@ -46,7 +51,7 @@ impl World {
         let mut context = BuildContext::new(assets);
         let mut tables = LightTables::default();
         let mut lights: Vec<Light> =
-            entities.iter().filter_map(|entity| tables.build_light(entity, &mut context)).collect();
+            entities.iter().flat_map(|entity| tables.build_light(entity, &mut context)).collect();
         for (id, entity) in emissive {
             let n = geometry.n_primitives(id);
             let area = (0..n).map(|primitive| geometry.area(id, primitive)).sum();
@@ -61,12 +66,12 @@ impl World {
     }
 
     /// One light without shapes.
-    fn of(entity: Entity) -> Self {
+    pub(super) fn of(entity: Entity) -> Self {
         Self::with_picture(entity, None)
     }
 
     /// One light without shapes, and the picture `map`.
-    fn with_picture(entity: Entity, picture: Option<Texels>) -> Self {
+    pub(super) fn with_picture(entity: Entity, picture: Option<Texels>) -> Self {
         let mut assets = Assets::default();
         if let Some(picture) = picture {
             assets.images.insert("map".to_owned(), Arc::new(picture));
@@ -74,7 +79,7 @@ impl World {
         Self::new(&[placed(entity, Transform::IDENTITY)], Vec::new(), &assets)
     }
 
-    fn context(&self) -> LightContext<'_> {
+    pub(super) fn context(&self) -> LightContext<'_> {
         LightContext {
             geometry: &self.geometry,
             textures: &self.textures,
@@ -83,57 +88,57 @@ impl World {
         }
     }
 
-    fn light(&self) -> &Light {
+    pub(super) fn light(&self) -> &Light {
         assert!(!self.diagnostics.has_errors(), "{:?}", self.diagnostics.list());
         &self.lights[0]
     }
 }
 
-fn placed(entity: Entity, transform: Transform) -> LightEntity {
+pub(super) fn placed(entity: Entity, transform: Transform) -> LightEntity {
     let world_from_light = AnimatedTransform::constant(transform);
     LightEntity { entity, world_from_light, outside_medium: String::new() }
 }
 
-fn floats(values: &[f32]) -> Value {
+pub(super) fn floats(values: &[f32]) -> Value {
     Value::Floats(values.to_vec())
 }
 
-fn point(x: f32, y: f32, z: f32) -> Value {
+pub(super) fn point(x: f32, y: f32, z: f32) -> Value {
     Value::Points3(vec![Point3::new(x, y, z)])
 }
 
-fn string(text: &str) -> Value {
+pub(super) fn string(text: &str) -> Value {
     Value::Strings(vec![text.to_owned()])
 }
 
-fn rgb(r: f32, g: f32, b: f32) -> Value {
+pub(super) fn rgb(r: f32, g: f32, b: f32) -> Value {
     Value::Rgb(vec![[r, g, b]])
 }
 
-fn at(p: Point3) -> Reference {
+pub(super) fn at(p: Point3) -> Reference {
     Reference { p, n: None }
 }
 
-fn facing(p: Point3, n: Vector3) -> Reference {
+pub(super) fn facing(p: Point3, n: Vector3) -> Reference {
     Reference { p, n: Some(n.as_normal()) }
 }
 
-fn rng(name: &str) -> Rng {
+pub(super) fn rng(name: &str) -> Rng {
     let words: Vec<u64> = name.bytes().map(u64::from).collect();
     Rng::new(hash64(&words), 1)
 }
 
-fn seed(name: &str) -> u64 {
+pub(super) fn seed(name: &str) -> u64 {
     rng(name).next_u64()
 }
 
 /// Wavelengths for quantities that are compared at a few wavelengths only.
-fn some_wavelengths() -> Wavelengths {
+pub(super) fn some_wavelengths() -> Wavelengths {
     Wavelengths::sample_visible(0.4)
 }
 
 /// The photometric value of a spectrum that is given at any wavelengths: its integral against y-bar.
-fn luminance(f: impl Fn(&Wavelengths) -> Sampled) -> f64 {
+pub(super) fn luminance(f: impl Fn(&Wavelengths) -> Sampled) -> f64 {
     let mut sum = 0.0;
     for start in (0..N_DENSE).step_by(4) {
         let nm: [f32; 4] = std::array::from_fn(|i| LAMBDA_MIN_NM + (start + i) as f32);
@@ -146,7 +151,7 @@ fn luminance(f: impl Fn(&Wavelengths) -> Sampled) -> f64 {
 }
 
 #[track_caller]
-fn assert_close(value: f64, expected: f64, relative: f64) {
+pub(super) fn assert_close(value: f64, expected: f64, relative: f64) {
     assert!((value - expected).abs() <= relative * expected.abs(), "{value} is not near {expected}");
 }
 
@@ -163,6 +168,6 @@ fn grey_value(size: usize, x: usize, y: usize) -> f32 {
 }
 
 /// A rotation without symmetry.
-fn tilted() -> Transform {
+pub(super) fn tilted() -> Transform {
     Transform::rotate(1.1, Vector3::new(0.3, -0.7, 0.5)).expect("the axis is not zero")
 }

@@ -1,0 +1,196 @@
+//! A luminaire as a point with measured intensity, in candela as the file says (SPEC EMI-8). Emitted directions are
+//! sampled in proportion to the table, so that photons carry equal power.
+//!
+//! A spectrum gives it colour; its luminous intensity stays that of the table. The size of the luminous opening is not
+//! used: from five times that size away, where such tables are measured, it makes no difference.
+
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+use etendue_geometry::Reference;
+use etendue_math::{Bounds2, Bounds3, Normal3, PiecewiseConstant2, Point2, Point3, Ray, Transform, Vector3};
+use etendue_spectrum::{Sampled, Spectrum, Wavelengths};
+
+use super::build::{self, spec};
+use super::context::point_sample;
+use super::{EmittedRay, LightBounds, LightContext, LightPower, LightSample, LightUnits, Photometry};
+use crate::parameters::{ParameterSpec, Parameters, SpectrumRole};
+
+/// Index of a luminaire in [`LightTables`](super::LightTables).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct IesLightId(pub u32);
+
+/// Cells of the density over the angle to the nadir and the azimuth.
+const N_CELLS: (usize, usize) = (360, 180);
+
+/// A luminaire.
+#[derive(Clone, Debug)]
+pub struct IesLight {
+    p: Point3,
+    world_from_light: Transform,
+    light_from_world: Transform,
+    /// Intensity for each candela of the table.
+    intensity: Spectrum,
+    photometry: Arc<Photometry>,
+    /// Flux of the table in lumen.
+    lumens: f64,
+    /// Largest intensity of the table in candela.
+    peak: f32,
+    /// Over azimuth / 2 pi and angle to the nadir / pi.
+    distribution: PiecewiseConstant2,
+}
+
+/// The direction at a place of the density's domain, and the sine of its angle to the nadir.
+fn direction_at(place: Point2) -> (Vector3, f32) {
+    let ((sine, cosine), (y, x)) = ((PI * place.y).sin_cos(), (2.0 * PI * place.x).sin_cos());
+    (Vector3::new(sine * x, sine * y, -cosine), sine)
+}
+
+impl IesLight {
+    /// Parameters in scene files.
+    pub const PARAMETERS: &[ParameterSpec] = &[
+        spec(
+            "filename",
+            "string",
+            "",
+            "",
+            "photometric file in the format IES LM-63 (1986, 1991, 1995, 2002)",
+        ),
+        spec("I", "spectrum", "illuminant of the colour space", "", "colour; its size does not count"),
+        build::SCALE,
+        build::POWER,
+    ];
+
+    /// A luminaire with one candela of `colour` for each of the table.
+    fn new(world_from_light: &Transform, unit: Spectrum, photometry: Arc<Photometry>) -> Self {
+        let (rows, columns) = N_CELLS;
+        let mut weights = Vec::with_capacity(rows * columns);
+        let (mut sum, mut peak) = (0.0_f64, 0.0_f32);
+        for i in 0..rows * columns {
+            let middle = |k: usize, n: usize| (k as f32 + 0.5) / n as f32;
+            let (w, sine) =
+                direction_at(Point2::new(middle(i % columns, columns), middle(i / columns, rows)));
+            let candela = photometry.intensity(w);
+            peak = peak.max(candela);
+            sum += f64::from(candela * sine);
+            weights.push(candela * sine);
+        }
+        let domain = Bounds2::new(Point2::splat(0.0), Point2::splat(1.0));
+        Self {
+            p: world_from_light.point(Point3::ORIGIN),
+            world_from_light: *world_from_light,
+            light_from_world: world_from_light.inverse(),
+            intensity: unit,
+            photometry,
+            lumens: sum * f64::from(2.0 * PI * PI) / (rows * columns) as f64,
+            peak,
+            distribution: PiecewiseConstant2::new(&weights, columns, rows, domain),
+        }
+    }
+
+    pub(super) fn build(p: &mut Parameters, world_from_light: &Transform) -> Option<Self> {
+        let scale = p.float("scale", 1.0);
+        if !(scale >= 0.0 && scale.is_finite()) {
+            let span = p.span_of("scale");
+            p.diagnostics().error(span, format!("\"scale\" of a light must be at least 0, not {scale}"));
+        }
+        let power = p.float("power", -1.0);
+        let colour =
+            p.spectrum("I", SpectrumRole::Illuminant).unwrap_or_else(|| build::default_illuminant(p));
+        let photometry = read_photometry(p)?;
+        let colour = super::emission::emitted(colour, 1.0, LightUnits::Photometric, &p.context.spectra);
+        let luminance = LightPower::of(&colour, &p.context.spectra).lumens;
+        let unit = colour.scaled(if luminance > 0.0 { (1.0 / luminance) as f32 } else { 0.0 });
+        let mut light = Self::new(world_from_light, unit, photometry);
+        if light.lumens <= 0.0 {
+            let span = p.span_of("filename");
+            p.diagnostics().warning(span, "the luminaire emits no light");
+        }
+        let factor = if power > 0.0 && light.lumens > 0.0 { f64::from(power) / light.lumens } else { 1.0 };
+        light.intensity = unit.scaled((factor * f64::from(scale)) as f32);
+        Some(light)
+    }
+
+    fn to_light_space(&self, w: Vector3) -> Option<Vector3> {
+        self.light_from_world.vector(w).try_normalized()
+    }
+
+    fn intensity_towards(&self, context: &LightContext, w: Vector3, lambda: &Wavelengths) -> Option<Sampled> {
+        let candela = self.photometry.intensity(self.to_light_space(w)?);
+        (candela > 0.0).then(|| self.intensity.sample(context.spectra, lambda) * candela)
+    }
+
+    pub(super) fn sample_li(
+        &self,
+        context: &LightContext,
+        reference: &Reference,
+        _u: Point2,
+        lambda: &Wavelengths,
+    ) -> Option<LightSample> {
+        let w = (reference.p - self.p).try_normalized()?;
+        point_sample(self.p, reference, self.intensity_towards(context, w, lambda)?)
+    }
+
+    pub(super) const fn pdf_li(&self, _: &LightContext, _: &Reference, _: Vector3) -> f32 {
+        0.0
+    }
+
+    pub(super) fn sample_le(
+        &self,
+        context: &LightContext,
+        _u_position: Point2,
+        u_direction: Point2,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedRay> {
+        let (place, pdf) = self.distribution.sample(u_direction);
+        let (w_light, sine) = direction_at(place);
+        let w = self.world_from_light.vector(w_light).try_normalized()?;
+        let le = self.intensity_towards(context, w, lambda)?;
+        if sine <= 0.0 {
+            return None;
+        }
+        EmittedRay::from_point(self.p, w, le, pdf / (2.0 * PI * PI * sine))
+    }
+
+    pub(super) fn pdf_le(&self, _: &LightContext, ray: &Ray, _: Option<Normal3>) -> (f32, f32) {
+        let Some(w) = self.to_light_space(ray.direction) else { return (0.0, 0.0) };
+        let sine = w.x.hypot(w.y);
+        if sine <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let turn = (w.y.atan2(w.x) / (2.0 * PI)).rem_euclid(1.0).min(1.0 - f32::EPSILON / 2.0);
+        let place = Point2::new(turn, (sine.atan2(-w.z) / PI).min(1.0 - f32::EPSILON / 2.0));
+        (0.0, self.distribution.pdf(place) / (2.0 * PI * PI * sine))
+    }
+
+    pub(super) fn power(&self, context: &LightContext) -> LightPower {
+        LightPower::of(&self.intensity, context.spectra) * self.lumens
+    }
+
+    /// Intensity in the brightest direction.
+    #[must_use]
+    pub fn peak_intensity(&self, context: &LightContext) -> LightPower {
+        LightPower::of(&self.intensity, context.spectra) * f64::from(self.peak)
+    }
+
+    pub(super) fn bounds(&self, context: &LightContext) -> Option<LightBounds> {
+        let mean = self.lumens / f64::from(4.0 * PI);
+        let intensity = LightPower::of(&self.intensity, context.spectra).weight * mean;
+        Some(LightBounds::point(Bounds3::new(self.p, self.p), intensity))
+    }
+}
+
+/// The table that `filename` names; problems are reported.
+fn read_photometry(p: &mut Parameters) -> Option<Arc<Photometry>> {
+    let span = p.span_of("filename");
+    let Some(filename) = p.string_opt("filename").filter(|name| !name.is_empty()) else {
+        p.missing("filename", "an ies light needs \"filename\"");
+        return None;
+    };
+    let assets = p.context.assets;
+    let found = assets.luminaires.get(&filename).cloned();
+    if found.is_none() && !assets.failed.contains(&filename) {
+        p.diagnostics().error(span, format!("the photometric file \"{filename}\" was not loaded"));
+    }
+    found
+}

@@ -1,0 +1,170 @@
+//! Measured luminous intensity of a luminaire over the directions of one of the three photometric webs (IES LM-63-2002,
+//! "Standard File Format for the Electronic Transfer of Photometric Data"; LM-75-01 for the webs).
+//!
+//! In the space of the light z is up. Type C, the usual one: the vertical angle is counted from the nadir -z, the
+//! horizontal one from +x over +y. Types A and B look along +x, with +z above and -y to the right:
+//!
+//! ```text
+//!   C:  ( sin v cos h,  sin v sin h, -cos v)
+//!   A:  ( cos v cos h, -cos v sin h,  sin v)   automotive: a vertical axis
+//!   B:  ( cos h cos v, -sin h,        cos h sin v)   floodlights: a horizontal axis
+//! ```
+//!
+//! Between the angles of the table intensity is interpolated linearly, beyond them it is 0. A table of a half or a quarter
+//! of the web is mirrored.
+
+use etendue_math::Vector3;
+
+/// A photometric web.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PhotometricWeb {
+    /// Automotive lights.
+    A,
+    /// Floodlights.
+    B,
+    /// Luminaires of rooms and streets.
+    C,
+}
+
+/// A table of luminous intensity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Photometry {
+    web: PhotometricWeb,
+    /// Degrees, ascending.
+    vertical: Vec<f32>,
+    /// Degrees, ascending.
+    horizontal: Vec<f32>,
+    /// Candela: for each horizontal angle those of all vertical ones.
+    candela: Vec<f32>,
+}
+
+impl Photometry {
+    /// A table of candela: for each horizontal angle those of all vertical ones.
+    ///
+    /// # Errors
+    /// What is wrong with the angles, if they are not ascending or do not suit the web, or if there are more or fewer
+    /// candela than pairs of angles, or negative or infinite ones.
+    pub fn new(
+        web: PhotometricWeb,
+        vertical: Vec<f32>,
+        mut horizontal: Vec<f32>,
+        mut candela: Vec<f32>,
+    ) -> Result<Self, &'static str> {
+        let is_ascending = |angles: &[f32]| angles.windows(2).all(|pair| pair[0] < pair[1]);
+        if vertical.len() < 2 || !is_ascending(&vertical) {
+            return Err("vertical angles must be two at least, and ascend");
+        }
+        let (Some(&first), Some(&last)) = (horizontal.first(), horizontal.last()) else {
+            return Err("there must be a horizontal angle");
+        };
+        if !is_ascending(&horizontal) {
+            return Err("horizontal angles must ascend");
+        }
+        if candela.len() != vertical.len() * horizontal.len() {
+            return Err("there must be a candela value for each pair of angles");
+        }
+        if candela.iter().any(|cd| !(*cd >= 0.0 && cd.is_finite())) {
+            return Err("candela values must be at least 0 and finite");
+        }
+        check_ranges(web, &vertical, first, last)?;
+        if web == PhotometricWeb::C && first == 0.0 && last > 180.0 && last < 360.0 {
+            // The last plane is the first.
+            horizontal.push(360.0);
+            candela.extend_from_within(..vertical.len());
+        }
+        Ok(Self { web, vertical, horizontal, candela })
+    }
+
+    /// Luminous intensity in candela in a unit direction of the light's space.
+    #[must_use]
+    pub fn intensity(&self, w: Vector3) -> f32 {
+        let (v, h) = match self.web {
+            PhotometricWeb::C => {
+                (angle_from(-w.z, w.x.hypot(w.y)), w.y.atan2(w.x).to_degrees().rem_euclid(360.0))
+            }
+            PhotometricWeb::A => (w.z.atan2(w.x.hypot(w.y)).to_degrees(), (-w.y).atan2(w.x).to_degrees()),
+            PhotometricWeb::B => (w.z.atan2(w.x).to_degrees(), (-w.y).atan2(w.x.hypot(w.z)).to_degrees()),
+        };
+        let (v, h) = self.fold(v, h);
+        let (Some((i, s)), Some((j, t))) = (bracket(&self.vertical, v), bracket(&self.horizontal, h)) else {
+            return 0.0;
+        };
+        let n = self.vertical.len();
+        let column = |j: usize| {
+            let values = &self.candela[j * n..][..n];
+            values[i] + (values[(i + 1).min(n - 1)] - values[i]) * s
+        };
+        let next = (j + 1).min(self.horizontal.len() - 1);
+        column(j) + (column(next) - column(j)) * t
+    }
+
+    /// Angles by the symmetry of the table.
+    fn fold(&self, v: f32, h: f32) -> (f32, f32) {
+        let (first, last) = (self.horizontal[0], self.horizontal[self.horizontal.len() - 1]);
+        match self.web {
+            PhotometricWeb::C if self.horizontal.len() == 1 => (v, first),
+            PhotometricWeb::C if last == 90.0 => {
+                let half = if h > 180.0 { 360.0 - h } else { h };
+                (v, if half > 90.0 { 180.0 - half } else { half })
+            }
+            PhotometricWeb::C if first == 90.0 => (
+                v,
+                if h < 90.0 {
+                    180.0 - h
+                } else if h > 270.0 {
+                    540.0 - h
+                } else {
+                    h
+                },
+            ),
+            PhotometricWeb::C if last == 180.0 => (v, if h > 180.0 { 360.0 - h } else { h }),
+            PhotometricWeb::C => (v, h),
+            PhotometricWeb::A | PhotometricWeb::B => {
+                let fold = |angle: f32, first: f32| if first == 0.0 { angle.abs() } else { angle };
+                let h = if self.horizontal.len() == 1 { first } else { fold(h, first) };
+                (fold(v, self.vertical[0]), h)
+            }
+        }
+    }
+}
+
+/// The angle in degrees whose cosine and sine are in that proportion.
+fn angle_from(cosine: f32, sine: f32) -> f32 {
+    sine.atan2(cosine).to_degrees()
+}
+
+/// The interval that holds `x`, and where in it; `None` outside. A single value holds itself.
+fn bracket(angles: &[f32], x: f32) -> Option<(usize, f32)> {
+    let last = angles.len() - 1;
+    if !(angles[0]..=angles[last]).contains(&x) {
+        return None;
+    }
+    let i = angles.partition_point(|angle| *angle <= x).clamp(1, last.max(1)) - 1;
+    if i >= last {
+        return Some((last, 0.0));
+    }
+    Some((i, (x - angles[i]) / (angles[i + 1] - angles[i])))
+}
+
+fn check_ranges(web: PhotometricWeb, vertical: &[f32], first: f32, last: f32) -> Result<(), &'static str> {
+    let within = |least: f32, most: f32| vertical[0] >= least && vertical[vertical.len() - 1] <= most;
+    if web == PhotometricWeb::C {
+        if !within(0.0, 180.0) {
+            return Err("vertical angles of type C lie between 0 and 180");
+        }
+        let is_known = first == 0.0 && (last == 0.0 || last == 90.0 || last >= 180.0 && last <= 360.0)
+            || first == 90.0 && last == 270.0;
+        return if is_known {
+            Ok(())
+        } else {
+            Err("horizontal angles of type C go from 0 to 0, 90, 180 or 360, or from 90 to 270")
+        };
+    }
+    if !within(-90.0, 90.0) {
+        return Err("vertical angles of types A and B lie between -90 and 90");
+    }
+    if first < -180.0 || last > 180.0 {
+        return Err("horizontal angles of types A and B lie between -180 and 180");
+    }
+    Ok(())
+}
