@@ -156,7 +156,8 @@ fn read_table(numbers: &mut Numbers) -> Result<Photometry, IesError> {
         2.0 => PhotometricWeb::B,
         3.0 => PhotometricWeb::A,
         other => {
-            return numbers.fail(format!("the photometric type should be 1 (C), 2 (B) or 3 (A), not {other}"));
+            return numbers
+                .fail(format!("the photometric type should be 1 (C), 2 (B) or 3 (A), not {other}"));
         }
     };
     let units = numbers.next("the type of units")?;

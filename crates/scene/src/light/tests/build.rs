@@ -21,7 +21,9 @@ fn every_kind_of_light_reads_what_it_documents() {
     for kind in LightKind::ALL {
         for spec in kind.parameters() {
             let value = match spec.kind {
+                "float" if spec.name == "time" => floats(&[12.0]),
                 "float" => floats(&[1.0]),
+                "vector3" => Value::Vectors3(vec![Vector3::new(1.0, 2.0, 3.0)]),
                 "bool" => Value::Bools(vec![true]),
                 "point3" => point(1.0, 2.0, 3.0),
                 "point3[4]" => Value::Points3(
@@ -31,6 +33,7 @@ fn every_kind_of_light_reads_what_it_documents() {
                 ),
                 "spectrum" => rgb(1.0, 1.0, 1.0),
                 "string" if spec.name == "units" => string("radiometric"),
+                "string" if spec.name == "date" => string("2026-06-21"),
                 "string" => string("map"),
                 other => panic!("a parameter of type {other}"),
             };
@@ -45,13 +48,29 @@ fn every_kind_of_light_reads_what_it_documents() {
                     phi_max_rad: std::f32::consts::TAU,
                 };
                 World::new(&[], vec![(sphere, Transform::IDENTITY, entity)], &assets)
+            } else if kind == LightKind::Ies {
+                let table = Photometry::new(PhotometricWeb::C, vec![0.0, 90.0], vec![0.0], vec![1.0, 2.0]);
+                let mut assets = Assets::default();
+                assets.luminaires.insert("map".to_owned(), Arc::new(table.expect("the table is right")));
+                let entity =
+                    if spec.name == "filename" { entity } else { entity.with("filename", string("map")) };
+                World::new(&[placed(entity, Transform::IDENTITY)], vec![], &assets)
+            } else if ["latitude", "longitude", "date", "time", "timezone"].contains(&spec.name) {
+                let entity =
+                    if spec.name == "latitude" { entity } else { entity.with("latitude", floats(&[50.0])) };
+                World::of(if spec.name == "date" {
+                    entity
+                } else {
+                    entity.with("date", string("2026-06-21"))
+                })
             } else if kind == LightKind::Projection && spec.name != "filename" {
                 World::with_picture(entity.with("filename", string("map")), Some(grey_picture(4)))
             } else {
                 World::with_picture(entity, Some(grey_picture(4)))
             };
             assert!(!messages(&world).contains("does not know"), "{}", messages(&world));
-            assert_eq!(world.lights.len(), 1, "{} {}: {}", kind.name(), spec.name, messages(&world));
+            let n = if kind == LightKind::SunSky { 2 } else { 1 };
+            assert_eq!(world.lights.len(), n, "{} {}: {}", kind.name(), spec.name, messages(&world));
         }
     }
 }

@@ -38,7 +38,7 @@ fn a_luminaire_shines_with_the_candela_of_its_table() {
     let world = world(photometry, colour, tilted());
     let (context, light) = (world.context(), world.light());
     for v in &vertical[1..5] {
-        for h in &horizontal[..5] {
+        for h in &horizontal[1..5] {
             let reference = at(Point3::ORIGIN + tilted().vector(type_c(*v, *h)) * 3.0);
             let lux = luminance(|lambda| {
                 light.sample_li(&context, &reference, Point2::splat(0.5), lambda).expect("it shines").le
@@ -112,7 +112,7 @@ fn impossible_tables_are_refused() {
 fn the_flux_of_a_luminaire_is_the_integral_of_its_table() {
     // I = 100 cos v below the horizon has pi 100 lm.
     let vertical: Vec<f32> = (0..=90).map(|v| v as f32).collect();
-    let candela = vertical.iter().map(|v| 100.0 * v.to_radians().cos()).collect();
+    let candela = vertical.iter().map(|v| (100.0 * v.to_radians().cos()).max(0.0)).collect();
     let cosine =
         Photometry::new(PhotometricWeb::C, vertical, vec![0.0], candela).expect("the table is right");
     let plain = world(cosine.clone(), Entity::new("ies"), Transform::IDENTITY);
@@ -161,8 +161,12 @@ fn a_spreading_surface_emits_by_its_profile_with_equal_power() {
         let pdf = |w: Vector3| profile.pdf_w(w.z.max(-1.0));
         sphere_chi_square(40_000, seed(name), sample, pdf, SIGNIFICANCE)
             .unwrap_or_else(|error| panic!("{name}: {error}"));
-        let flux = integrate_sphere(|w| f64::from(profile.relative(w.z.max(0.0)) * w.z.max(0.0)), 1e-5);
-        assert_close(f64::from(profile.projected_solid_angle()), flux, 4e-3);
+        // The integral over cos theta, by so many midpoints that the edge of the cone counts for 1e-4.
+        let n = 200_000;
+        let cosines = (0..n).map(|i| (i as f32 + 0.5) / n as f32);
+        let flux: f64 =
+            cosines.map(|c| f64::from(profile.relative(c) * c)).sum::<f64>() * 2.0 * PI / f64::from(n);
+        assert_close(f64::from(profile.projected_solid_angle()), flux, 1e-3);
         let mut rng = rng(name);
         for _ in 0..200 {
             let w = profile.sample(rng.next_point2());
