@@ -13,10 +13,13 @@ mod shape;
 mod accelerator;
 mod builder;
 mod geometry;
+mod heightfield;
 mod instance;
 mod lamp;
 mod light_sampling;
+mod refine;
 mod refit;
+mod revolution;
 mod subdivision;
 mod work;
 
@@ -31,12 +34,15 @@ mod test_support;
 pub use accelerator::{Accelerator, BinarySplit, DivisionSettings, GridSettings, KdTreeSettings};
 pub use builder::GeometryBuilder;
 pub use geometry::{Geometry, GeometryCounts};
+pub use heightfield::{FractalHeights, HeightGrid, MAX_GRID_SIDE, MAX_HEIGHT_LEVELS};
 pub use hit::{
     GeometryId, Hit, NO_INSTANCE, ObjectId, Reference, ShapeSample, SurfaceDerivatives, SurfacePoint,
 };
 pub use lamp::{FlatLamp, Lamp};
 pub use mesh::{BilinearMesh, MeshError, TriangleMesh};
+pub use refine::{Fractal, MAX_REFINED_TRIANGLES, Refined, TooManyTriangles};
 pub use refit::MovedVertices;
+pub use revolution::{ContourError, MAX_CONTOUR_POINTS, Revolution};
 pub use shape::Shape;
 pub use subdivision::loop_subdivide;
 pub use work::TraversalWork;

@@ -161,7 +161,7 @@ fn azimuth(p: DVec3) -> f64 {
 }
 
 /// An azimuth limit in [0, 2 pi]; the rounded 2 pi of single precision is taken for the whole circle.
-fn clamp_azimuth(phi_max: f64) -> f64 {
+pub(crate) fn clamp_azimuth(phi_max: f64) -> f64 {
     if phi_max >= TAU * (1.0 - 1e-6) { TAU } else { phi_max.max(0.0) }
 }
 

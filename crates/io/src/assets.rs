@@ -5,8 +5,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use etendue_image::Texels;
+use etendue_scene::assets::Contours;
 use etendue_scene::bsdf::measured::MeasuredBrdf;
 use etendue_scene::bsdf::tabulated::BrdfGrid;
+use etendue_scene::build::MESH_FILES;
 use etendue_scene::camera::LensPrescription;
 use etendue_scene::document::{EmbeddedFile, Entity, ShapeEntity, Value};
 use etendue_scene::light::Photometry;
@@ -15,6 +17,7 @@ use etendue_spectrum::{known_but_missing, named_spectrum};
 use rayon::prelude::*;
 
 use crate::brdf_table::read_brdf_table;
+use crate::contours::read_contours;
 use crate::file::read_file;
 use crate::ies::read_ies;
 use crate::images::{read_texels, read_texels_from};
@@ -36,6 +39,7 @@ enum Kind {
     Measured,
     Lens,
     Luminaire,
+    Contours,
 }
 
 /// Files by kind and name, with the first parameter that names each.
@@ -51,11 +55,13 @@ enum Loaded {
     Measured(MeasuredBrdf),
     Lens(LensPrescription),
     Luminaire(Photometry),
+    Contours(Contours),
 }
 
 /// Reads all files that parameters of the document name; what cannot be read is an error at the parameter.
 ///
-/// Known are the meshes of `plymesh`, the images of `imagemap` textures, of lights and of normal maps, measured
+/// Known are the meshes of `plymesh` and `fractal`, contours of `revolution`, the images of `heightfield`,
+/// the images of `imagemap` textures, of lights and of normal maps, measured
 /// spectra, the tables of `tabulated`, the measurements of `measured`, the lenses of `realistic` and the luminaires of `ies`.
 /// File names are relative to [`Document::base_directory`]; names in [`Document::embedded`] stand for what the document
 /// brings along.
@@ -94,6 +100,9 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
             }
             Ok(Loaded::Luminaire(photometry)) => {
                 assets.luminaires.insert(name, Arc::new(photometry));
+            }
+            Ok(Loaded::Contours(contours)) => {
+                assets.contours.insert(name, contours);
             }
             Err(message) => {
                 let error = diagnostics.error(span, message);
@@ -141,6 +150,7 @@ fn decode(kind: Kind, bytes: &[u8]) -> Result<Loaded, String> {
             Ok(Loaded::Mesh(Arc::new(ply.mesh), ply.warnings))
         }
         Kind::Brdf => read_brdf_table(bytes).map(Loaded::Brdf).map_err(|error| error.to_string()),
+        Kind::Contours => read_contours(bytes).map(Loaded::Contours).map_err(|error| error.to_string()),
         Kind::Measured => read_measured(bytes).map(Loaded::Measured).map_err(|error| error.to_string()),
         Kind::Lens => read_lens(bytes).map(Loaded::Lens).map_err(|error| error.to_string()),
         Kind::Spectrum | Kind::Image => {
@@ -154,8 +164,11 @@ fn wanted_files(document: &Document) -> Wanted {
     let mut wanted = Wanted::new();
     let objects = document.objects.iter().flat_map(|object| &object.shapes);
     for ShapeEntity { entity, .. } in document.shapes.iter().chain(objects) {
-        if entity.type_name == "plymesh" {
-            add(&mut wanted, Kind::Mesh, entity, "filename");
+        match entity.type_name.as_str() {
+            name if MESH_FILES.contains(&name) => add(&mut wanted, Kind::Mesh, entity, "filename"),
+            "revolution" => add(&mut wanted, Kind::Contours, entity, "filename"),
+            "heightfield" => add(&mut wanted, Kind::Image, entity, "filename"),
+            _ => {}
         }
         add_spectra(&mut wanted, entity);
     }

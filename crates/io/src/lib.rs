@@ -7,6 +7,7 @@
 pub mod assets;
 pub mod brdf_table;
 pub mod checkpoint;
+pub mod contours;
 pub mod error;
 pub mod ies;
 pub mod images;
@@ -25,6 +26,7 @@ mod file;
 
 pub use assets::load_assets;
 pub use brdf_table::read_brdf_table;
+pub use contours::read_contours;
 pub use error::FileError;
 pub use file::read_file;
 pub use images::{ImageError, read_image, read_texels, read_texels_from, write_image};

@@ -56,6 +56,10 @@ pub struct LoadedMesh {
     pub attributes: Vec<MeshAttribute>,
 }
 
+/// Contours of interfaces in the order of their file, each with its name: points (height, radius).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Contours(pub Vec<(String, Vec<Point2>)>);
+
 /// Everything that was loaded for a document.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
@@ -73,6 +77,8 @@ pub struct Assets {
     pub lenses: HashMap<String, Arc<LensPrescription>>,
     /// Measured luminaires by file name.
     pub luminaires: HashMap<String, Arc<Photometry>>,
+    /// Contours of surfaces of revolution by file name.
+    pub contours: HashMap<String, Contours>,
     /// Names of files that could not be read. Whoever tried has said why, so that the scene builder need not.
     pub failed: HashSet<String>,
 }

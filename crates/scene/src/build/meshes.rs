@@ -15,6 +15,9 @@ use crate::texture::{AttributeId, Corners, MeshAttributes, ShapeAttribute};
 /// Loop subdivision multiplies faces by four at each step; more than this exhausts memory.
 const MAX_SUBDIVISION_LEVELS: i32 = 10;
 
+/// Shapes whose `filename` is that of a mesh.
+pub const MESH_FILES: &[&str] = &["plymesh", "fractal"];
+
 /// Meshes from files, moved out at their last use and copied before.
 #[derive(Debug, Default)]
 pub(super) struct MeshStore {
@@ -53,7 +56,9 @@ impl MeshStore {
 fn mesh_file(shape: &ShapeEntity) -> Option<&str> {
     let parameter = shape.entity.parameters.iter().find(|p| p.name == "filename")?;
     match &parameter.value {
-        Value::Strings(names) if shape.entity.type_name == "plymesh" => names.first().map(String::as_str),
+        Value::Strings(names) if MESH_FILES.contains(&shape.entity.type_name.as_str()) => {
+            names.first().map(String::as_str)
+        }
         _ => None,
     }
 }
@@ -189,14 +194,9 @@ pub(super) fn read_ply_mesh(
     meshes: &mut MeshStore,
     wanted: &MeshAttributes,
 ) -> Vec<Shape> {
-    if p.has("displacement") {
-        let span = p.span_of("displacement");
-        p.diagnostics().warning(span, "displacement is not available yet; \"displacement\" is ignored");
-    }
-    p.ignore("displacement");
-    p.ignore("edgelength");
     let Some(name) = p.string_opt("filename").filter(|name| !name.is_empty()) else {
-        p.missing("filename", "a \"plymesh\" needs a \"filename\"");
+        let message = format!("a \"{}\" needs a \"filename\"", p.entity().type_name);
+        p.missing("filename", message);
         return Vec::new();
     };
     // A file that could not be read was reported when it was loaded.

@@ -7,9 +7,11 @@ mod accelerator;
 mod camera;
 mod film;
 mod formulas;
+mod heights;
 mod lights;
 mod materials;
 mod meshes;
+mod revolution;
 mod shapes;
 #[cfg(test)]
 mod tests;
@@ -28,6 +30,7 @@ use crate::texture::Textures;
 
 pub use accelerator::ACCELERATORS;
 pub use film::{FILMS, SAMPLERS};
+pub use meshes::MESH_FILES;
 pub use shapes::SHAPES;
 
 use meshes::MeshStore;

@@ -2,17 +2,21 @@
 
 use etendue_geometry::{GeometryBuilder, GeometryId, ObjectId, Shape};
 
-use crate::document::{MaterialReference, ShapeEntity};
+use crate::document::{Document, MaterialReference, ShapeEntity, Value};
 use crate::material::MaterialId;
 use crate::parameters::{ParameterSpec, Parameters, spec};
 use crate::scene::ShapeAttributes;
 use crate::texture::{FloatTexture, MeshAttributes};
 
 use super::formulas;
+use super::heights::{
+    DISPLACEMENT, EDGE_LENGTH, FRACTAL, HEIGHT_FIELD, read_displacement, read_fractal, read_height_field,
+};
 use super::materials::DEFAULT_MATERIAL;
 use super::meshes::{
     MeshStore, read_bilinear_mesh, read_loop_subdivision, read_ply_mesh, read_triangle_mesh,
 };
+use super::revolution::{REVOLUTION, read_revolution};
 use super::{Builder, known_names};
 
 /// Shape types with their parameters.
@@ -29,6 +33,9 @@ pub const SHAPES: &[(&str, &[ParameterSpec])] = &[
     ("plymesh", PLY_MESH),
     ("bilinearmesh", BILINEAR_MESH),
     ("loopsubdiv", LOOP_SUBDIVISION),
+    ("revolution", REVOLUTION),
+    ("heightfield", HEIGHT_FIELD),
+    ("fractal", FRACTAL),
 ];
 
 /// Shapes of pbrt-v4 that are left out with a warning.
@@ -70,10 +77,14 @@ const TRIANGLE_MESH: &[ParameterSpec] = &[
     spec("S", "vector", "", "", "vertex tangents"),
     spec("uv", "point2", "", "", "vertex texture coordinates"),
     spec("faceIndices", "integer", "", "", "a number for each face"),
+    DISPLACEMENT,
+    EDGE_LENGTH,
     ALPHA,
 ];
 const PLY_MESH: &[ParameterSpec] = &[
     spec("filename", "string", "", "", "PLY file, plain or gzipped; quadrilaterals become bilinear patches"),
+    DISPLACEMENT,
+    EDGE_LENGTH,
     ALPHA,
 ];
 const BILINEAR_MESH: &[ParameterSpec] = &[
@@ -119,7 +130,13 @@ impl Builder<'_, '_> {
     ) {
         let mut p = Parameters::new(&entity.entity, &mut self.context);
         let alpha = p.float_texture_opt("alpha").filter(|alpha| *alpha != FloatTexture::Constant(1.0));
-        let shapes = read_shapes(&mut p, meshes, &self.textures.mesh_attributes);
+        let mut shapes = read_shapes(&mut p, meshes, &self.textures.mesh_attributes);
+        if matches!(entity.entity.type_name.as_str(), "trianglemesh" | "plymesh")
+            && let Some(displacement) = read_displacement(&mut p, edge_scale(self.document))
+        {
+            meshes.attributes.clear();
+            shapes = displacement.apply(&mut p, shapes, &self.textures, &entity.world_from_object.start);
+        }
         p.finish();
         let mut attributes = std::mem::take(&mut meshes.attributes).into_iter();
         if shapes.is_empty() {
@@ -192,6 +209,15 @@ impl Builder<'_, '_> {
     }
 }
 
+/// The option `displacementedgescale`, a factor of all edge lengths.
+fn edge_scale(document: &Document) -> f32 {
+    let option = document.options.iter().find(|option| option.name == "displacementedgescale");
+    match option.map(|option| &option.value) {
+        Some(Value::Floats(values)) => values.first().copied().unwrap_or(1.0),
+        _ => 1.0,
+    }
+}
+
 fn read_shapes(
     p: &mut Parameters<'_, '_>,
     meshes: &mut MeshStore,
@@ -210,6 +236,9 @@ fn read_shapes(
         "plymesh" => read_ply_mesh(p, meshes, attributes),
         "bilinearmesh" => read_bilinear_mesh(p).map(Shape::Bilinear).into_iter().collect(),
         "loopsubdiv" => read_loop_subdivision(p).into_iter().collect(),
+        "revolution" => read_revolution(p).into_iter().collect(),
+        "heightfield" => read_height_field(p).into_iter().collect(),
+        "fractal" => read_fractal(p, meshes, attributes),
         missing if MISSING_SHAPES.contains(&missing) => {
             let message = format!("the shape \"{missing}\" is not available yet; it is left out");
             let span = p.span();

@@ -1,8 +1,10 @@
 //! Documents made in code become scenes, and what is wrong with them is reported where it stands.
 
+mod heights;
 mod lights;
 mod materials;
 mod meshes;
+mod revolution;
 mod settings;
 mod shapes;
 

@@ -140,7 +140,4 @@ fn files_are_checked() {
     Arc::make_mut(assets.meshes.get_mut("a.ply").expect("it is there")).quads[0][2] = 9;
     let (_, problems) = build_with(&lit_with(vec![shape(here(ply()))]), assets);
     only_problem(&problems, Severity::Error, "face 0 uses vertex 9");
-    let displaced = here(ply().with("displacement", texture("bumps")).with("edgelength", floats(&[0.1])));
-    let (_, problems) = build_with(&lit_with(vec![shape(displaced)]), files());
-    only_problem(&problems, Severity::Warning, "displacement is not available yet");
 }

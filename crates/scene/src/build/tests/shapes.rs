@@ -55,6 +55,13 @@ fn tables_list_what_is_asked_for() {
                 ("uv", _) => Value::Points2(vec![Point2::splat(0.5); 4]),
                 ("indices", _) if *name == "bilinearmesh" => integers(&[0, 1, 2, 3]),
                 ("indices", _) => integers(&[0, 1, 2]),
+                // One or the other.
+                ("filename" | "profile", _) if *name == "revolution" => continue,
+                ("contour", _) => Value::Points2(vec![Point2::new(0.0, 0.0), Point2::new(1.0, 1.0)]),
+                ("z", _) => floats(&[0.0; 4]),
+                ("nu" | "nv", _) => integers(&[2]),
+                ("encoding", _) => strings(&["linear"]),
+                (_, "bool") => Value::Bools(vec![true]),
                 ("filename", _) => strings(&["a.ply"]),
                 ("p2", _) => points(&[[1.0, 1.0, 1.0]]),
                 (_, "point3") => points(&[[0.5, 0.0, 0.0]]),
