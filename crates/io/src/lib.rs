@@ -9,6 +9,7 @@ pub mod brdf_table;
 pub mod checkpoint;
 pub mod contours;
 pub mod error;
+pub mod gltf;
 pub mod ies;
 pub mod images;
 pub mod lens;
@@ -23,12 +24,14 @@ pub mod spd;
 pub mod tensor;
 
 mod file;
+mod json;
 
 pub use assets::load_assets;
 pub use brdf_table::read_brdf_table;
 pub use contours::read_contours;
 pub use error::FileError;
 pub use file::read_file;
+pub use gltf::read_gltf;
 pub use images::{ImageError, read_image, read_texels, read_texels_from, write_image};
 pub use lens::read_lens;
 pub use measured::{measured_bytes, read_measured};

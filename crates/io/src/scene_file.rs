@@ -7,6 +7,7 @@ use std::path::Path;
 use etendue_scene::{Diagnostics, Document};
 
 use crate::file::decompressed;
+use crate::gltf::read_gltf;
 use crate::mitsuba::read_mitsuba;
 use crate::pbrt::read_pbrt;
 
@@ -51,7 +52,7 @@ pub fn read_scene(path: &Path) -> (Document, Diagnostics) {
     };
     match format {
         Format::Pbrt => read_pbrt(path),
-        Format::Gltf => unavailable(path, "glTF"),
+        Format::Gltf => read_gltf(path),
         Format::Mitsuba => read_mitsuba(path),
         Format::Obj => unavailable(path, "OBJ"),
         Format::Ply => unavailable(path, "PLY as a scene"),

@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use etendue_image::Texels;
-use etendue_math::{Normal3, Point2, Point3};
+use etendue_math::{Normal3, Point2, Point3, Vector3};
 
 use crate::bsdf::measured::MeasuredBrdf;
 use crate::bsdf::tabulated::BrdfGrid;
@@ -48,6 +48,8 @@ pub struct LoadedMesh {
     pub positions: Vec<Point3>,
     /// Vertex normals, not necessarily of unit length; empty if the file has none.
     pub normals: Vec<Normal3>,
+    /// Tangents of vertices along u, not necessarily of unit length; empty if the file has none.
+    pub tangents: Vec<Vector3>,
     /// Vertex texture coordinates; empty if the file has none.
     pub uvs: Vec<Point2>,
     /// Face index of each triangle, then of each quad; empty if the file has none.

@@ -9,7 +9,7 @@ use etendue_scene::{AttributeDomain, LoadedMesh, MeshAttribute};
 /// Normals, texture coordinates, face indices and attributes are written if there is one for each vertex or face.
 #[must_use]
 pub fn write_ply(mesh: &LoadedMesh) -> Vec<u8> {
-    let LoadedMesh { triangles, quads, positions, normals, uvs, face_indices, attributes } = mesh;
+    let LoadedMesh { triangles, quads, positions, normals, uvs, face_indices, attributes, .. } = mesh;
     let (n_vertices, n_faces) = (positions.len(), triangles.len() + quads.len());
     let has_normals = normals.len() == n_vertices && n_vertices > 0;
     let has_uvs = uvs.len() == n_vertices && n_vertices > 0;

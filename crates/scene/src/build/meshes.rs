@@ -226,7 +226,8 @@ fn attributes_of_parts(
 
 /// Triangles and quadrilaterals of a file as separate shapes.
 fn split_loaded_mesh(p: &mut Parameters<'_, '_>, mesh: LoadedMesh) -> Vec<Shape> {
-    let LoadedMesh { triangles, quads, positions, normals, uvs, mut face_indices, attributes: _ } = mesh;
+    let LoadedMesh { triangles, quads, positions, normals, tangents, uvs, mut face_indices, attributes: _ } =
+        mesh;
     let quad_faces = if face_indices.len() > triangles.len() {
         face_indices.split_off(triangles.len())
     } else {
@@ -247,8 +248,7 @@ fn split_loaded_mesh(p: &mut Parameters<'_, '_>, mesh: LoadedMesh) -> Vec<Shape>
         }
     }
     if !triangles.is_empty() {
-        let mesh =
-            TriangleMesh { positions, indices: triangles, normals, tangents: Vec::new(), uvs, face_indices };
+        let mesh = TriangleMesh { positions, indices: triangles, normals, tangents, uvs, face_indices };
         if report_mesh(p, span, mesh.validate()).is_some() {
             shapes.push(Shape::Triangles(mesh));
         }

@@ -16,6 +16,8 @@ pub struct MaterialContext {
     pub ng: Normal3,
     /// Shading unit normal.
     pub ns: Normal3,
+    /// Change of the position with v.
+    pub dpdv: Vector3,
     /// First shading tangent.
     pub shading_dpdu: Vector3,
     /// Second shading tangent.
@@ -41,6 +43,7 @@ impl MaterialContext {
             wo,
             ng: point.ng,
             ns: point.ns,
+            dpdv: derivatives.dpdv,
             shading_dpdu: derivatives.shading_dpdu,
             shading_dpdv: derivatives.shading_dpdv,
             dndu: derivatives.dndu,

@@ -8,6 +8,7 @@ use etendue_image::Texels;
 use etendue_math::{Frame, Point2, Vector3};
 
 use super::MaterialContext;
+use crate::texture::{SpectrumTextureId, SpectrumTextureNode, Textures};
 
 /// Index of a normal map in [`Materials`](super::Materials).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -64,4 +65,28 @@ impl NormalMap {
         let dpdv = ns.cross(x) * ctx.shading_dpdv.length();
         ctx.with_tangents(dpdu, dpdv)
     }
+}
+
+/// The context with the shading frame of the normal that a texture gives. Other than in [`NormalMap::perturb`], which
+/// follows pbrt, green runs along v where texture coordinates are mirrored too, as glTF has it.
+pub(super) fn perturb_by_texture(
+    texture: SpectrumTextureId,
+    scale: f32,
+    textures: &Textures,
+    ctx: &MaterialContext,
+) -> MaterialContext {
+    let SpectrumTextureNode::Image(image) = textures.spectrum_node(texture) else { return *ctx };
+    let [x, y, z] = image
+        .texture
+        .eval_rgb(textures.image(image.texture.image), &ctx.texture)
+        .map(|value| 2.0 * value - 1.0);
+    let mut frame = Frame::from_zx(ctx.ns.as_vector(), ctx.shading_dpdu);
+    if frame.y.dot(ctx.dpdv) < 0.0 {
+        frame.y = -frame.y;
+    }
+    let normal = frame.x * (scale * x) + frame.y * (scale * y) + frame.z * z;
+    let Some(ns) = normal.try_normalized() else { return *ctx };
+    let x = Frame::from_zx(ns, ctx.shading_dpdu).x;
+    let dpdu = x * ctx.shading_dpdu.length();
+    ctx.with_tangents(dpdu, ns.cross(x) * ctx.shading_dpdv.length())
 }

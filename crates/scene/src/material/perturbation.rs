@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::bump::bump;
-use super::normal_map::{NormalMap, NormalMapId};
+use super::normal_map::{NormalMap, NormalMapId, perturb_by_texture};
 use super::{MaterialContext, Materials};
-use crate::parameters::Parameters;
-use crate::texture::{FloatTexture, Textures};
+use crate::parameters::{Parameters, SpectrumRole};
+use crate::texture::{FloatTexture, SpectrumTexture, SpectrumTextureId, Textures};
 
 /// What perturbs the shading normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,6 +18,13 @@ pub enum Perturbation {
     Bump(FloatTexture),
     /// An image of normals.
     NormalMap(NormalMapId),
+    /// A texture `imagemap` of normals, whose x and y count `scale` times; other kinds change nothing.
+    NormalTexture {
+        /// The texture.
+        texture: SpectrumTextureId,
+        /// Strength of the relief.
+        scale: f32,
+    },
 }
 
 impl Perturbation {
@@ -50,6 +57,22 @@ impl Perturbation {
         Some(Self::NormalMap(materials.add_normal_map(map)))
     }
 
+    /// The texture of normals that the first parameter names, with the strength that the second gives.
+    pub(super) fn build_normal_texture(
+        p: &mut Parameters<'_, '_>,
+        name: &'static str,
+        scale: &'static str,
+    ) -> Option<Self> {
+        let scale = p.float(scale, 1.0);
+        let texture = p.spectrum_texture_opt(name, SpectrumRole::Unbounded)?;
+        if let SpectrumTexture::Node(texture) = texture {
+            return Some(Self::NormalTexture { texture, scale });
+        }
+        let span = p.span_of(name);
+        p.diagnostics().error(span, format!("\"{name}\" must be a texture \"imagemap\""));
+        None
+    }
+
     /// The context with the perturbed shading frame; `None` if nothing perturbs it.
     #[inline]
     pub(super) fn apply(
@@ -62,6 +85,7 @@ impl Perturbation {
             Self::None => None,
             Self::Bump(height) => Some(bump(height, textures, ctx)),
             Self::NormalMap(id) => Some(materials.normal_map(id).perturb(ctx)),
+            Self::NormalTexture { texture, scale } => Some(perturb_by_texture(texture, scale, textures, ctx)),
         }
     }
 }

@@ -52,6 +52,8 @@ impl PrincipledMaterial {
         extensions::CLEARCOAT,
         extensions::CLEARCOAT_ROUGHNESS,
         extensions::CLEARCOAT_NORMAL_MAP,
+        extensions::CLEARCOAT_NORMAL_TEXTURE,
+        extensions::CLEARCOAT_NORMAL_SCALE,
         extensions::SHEEN_COLOR,
         extensions::SHEEN_ROUGHNESS,
         extensions::IRIDESCENCE,
@@ -64,6 +66,13 @@ impl PrincipledMaterial {
         extensions::DISPERSION,
         spec::DISPLACEMENT,
         spec::NORMAL_MAP,
+        spec::spec(
+            "normaltexture",
+            "spectrum texture",
+            "",
+            "Texture \"imagemap\" of tangent-space normals, of encoding linear; overrides normalmap.",
+        ),
+        spec::spec("normalscale", "float", "1", "Factor of x and y of normaltexture."),
     ];
 
     pub(super) fn build(p: &mut Parameters<'_, '_>, materials: &mut Materials) -> Self {
@@ -74,7 +83,8 @@ impl PrincipledMaterial {
             roughness: limits::float_within(p, "roughness", 0.5, limits::SHARES),
             ior: if reflects_all { 0.0 } else { limits::constant_within(p, "ior", 1.5, INDICES) },
             extensions: None,
-            perturbation: Perturbation::build(p, materials),
+            perturbation: Perturbation::build_normal_texture(p, "normaltexture", "normalscale")
+                .unwrap_or_else(|| Perturbation::build(p, materials)),
         };
         let extensions = PrincipledExtensions::build(p, &plain, materials);
         Self { extensions: extensions.map(|extensions| materials.add_extensions(extensions)), ..plain }

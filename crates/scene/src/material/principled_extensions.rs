@@ -92,6 +92,14 @@ pub(super) const CLEARCOAT_NORMAL_MAP: ParameterSpec = spec::spec(
     "",
     "Image file of the coat's normals, which does not follow the relief below.",
 );
+pub(super) const CLEARCOAT_NORMAL_TEXTURE: ParameterSpec = spec::spec(
+    "clearcoatnormaltexture",
+    "spectrum texture",
+    "",
+    "The same as a texture \"imagemap\" of encoding linear.",
+);
+pub(super) const CLEARCOAT_NORMAL_SCALE: ParameterSpec =
+    spec::spec("clearcoatnormalscale", "float", "1", "Factor of x and y of clearcoatnormaltexture.");
 pub(super) const SHEEN_COLOR: ParameterSpec =
     spec::spec("sheencolor", "spectrum texture", "0", "Colour of the fibres on the surface, in [0, 1].");
 pub(super) const SHEEN_ROUGHNESS: ParameterSpec = spec::spec(
@@ -132,7 +140,7 @@ pub(super) const ATTENUATION_DISTANCE: ParameterSpec = ParameterSpec {
 pub(super) const DISPERSION: ParameterSpec =
     spec::spec("dispersion", "float", "0", "20 over Abbe's number of the solid; 0 does not disperse.");
 
-const ALL: [ParameterSpec; 17] = [
+const ALL: [ParameterSpec; 18] = [
     SPECULAR,
     SPECULAR_COLOR,
     ANISOTROPY,
@@ -140,6 +148,7 @@ const ALL: [ParameterSpec; 17] = [
     CLEARCOAT,
     CLEARCOAT_ROUGHNESS,
     CLEARCOAT_NORMAL_MAP,
+    CLEARCOAT_NORMAL_TEXTURE,
     SHEEN_COLOR,
     SHEEN_ROUGHNESS,
     IRIDESCENCE,
@@ -175,8 +184,13 @@ impl PrincipledExtensions {
             anisotropy_rotation_deg: limits::float_within(p, "anisotropyrotation", 0.0, TURNS_DEG),
             clearcoat,
             clearcoat_roughness,
-            clearcoat_perturbation: Perturbation::build_normal_map(p, "clearcoatnormalmap", materials)
-                .unwrap_or_default(),
+            clearcoat_perturbation: Perturbation::build_normal_texture(
+                p,
+                CLEARCOAT_NORMAL_TEXTURE.name,
+                CLEARCOAT_NORMAL_SCALE.name,
+            )
+            .or_else(|| Perturbation::build_normal_map(p, CLEARCOAT_NORMAL_MAP.name, materials))
+            .unwrap_or_default(),
             sheen_color: limits::albedo(p, "sheencolor", 0.0),
             sheen_roughness,
             iridescence,

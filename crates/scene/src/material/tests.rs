@@ -85,6 +85,7 @@ fn context() -> MaterialContext {
         wo: Vector3::new(0.0, 0.6, 0.8),
         ng: n,
         ns: n,
+        dpdv: Vector3::new(0.0, 3.0, 0.0),
         shading_dpdu: Vector3::new(2.0, 0.0, 0.0),
         shading_dpdv: Vector3::new(0.0, 3.0, 0.0),
         dndu: Vector3::splat(0.0),

@@ -10,9 +10,10 @@ use crate::parameters::{BuildContext, ParameterSpec, Parameters, SpectrumRole};
 
 use super::noise::Octaves;
 use super::{
-    Bilerp, CheckMapping, Checkerboard, DirectionMix, Dots, Fbm, FloatTexture, FloatTextureNode, ImageFilter,
-    ImageId, ImageOptions, ImageTexture, Mapping2, Mapping3, Marble, MeshAttributeTexture, Mix, Scale,
-    SpectrumImageTexture, SpectrumTexture, SpectrumTextureNode, Textures, Uplift, Windy, WrapMode, Wrinkled,
+    Bilerp, Channels, CheckMapping, Checkerboard, DirectionMix, Dots, Fbm, FloatTexture, FloatTextureNode,
+    ImageFilter, ImageId, ImageOptions, ImageTexture, Mapping2, Mapping3, Marble, MeshAttributeTexture, Mix,
+    Scale, SpectrumImageTexture, SpectrumTexture, SpectrumTextureNode, Textures, Uplift, Windy, WrapMode,
+    Wrinkled,
 };
 use super::{
     bilerp, checkerboard, constant, dots, fractal, image_texture, marble, mesh_attribute, mix, scale,
@@ -164,6 +165,9 @@ impl Textures {
                 outside: p.float_texture("outside", 0.0),
             }),
             "imagemap" => match self.read_image(p, world_from_texture) {
+                Some(texture) if self.image(texture.image).lacks_alpha() => {
+                    return FloatTexture::Constant(texture.number(1.0));
+                }
                 Some(texture) => FloatTextureNode::Image(texture),
                 None => return FloatTexture::Constant(1.0),
             },
@@ -258,6 +262,8 @@ impl Textures {
         let mapping = Mapping2::from_parameters(p, world_from_texture);
         let options = read_image_options(p);
         let (scale, invert) = (p.float("scale", 1.0), p.bool("invert", false));
+        let tint = p.rgb("tint").unwrap_or([1.0; 3]);
+        let cutoff = p.float_opt("cutoff");
         let Some(name) = p.string_opt("filename").filter(|name| !name.is_empty()) else {
             p.missing("filename", "an image texture needs a \"filename\"");
             return None;
@@ -270,7 +276,7 @@ impl Textures {
             return None;
         };
         let image: ImageId = self.add_image(&name, texels, options);
-        Some(ImageTexture { mapping, image, scale, invert })
+        Some(ImageTexture { mapping, image, scale: tint.map(|c| scale * c), invert, cutoff })
     }
 }
 
@@ -286,11 +292,22 @@ fn read_image_options(p: &mut Parameters<'_, '_>) -> ImageOptions {
         ("repeat", WrapMode::Repeat),
         ("black", WrapMode::Black),
         ("clamp", WrapMode::Clamp),
+        ("mirror", WrapMode::Mirror),
         ("octahedralsphere", WrapMode::OctahedralSphere),
     ];
+    let channels = [
+        ("", Channels::Colors),
+        ("r", Channels::Color(0)),
+        ("g", Channels::Color(1)),
+        ("b", Channels::Color(2)),
+        ("a", Channels::Alpha),
+    ];
+    let wrap = p.choice("wrap", "repeat", &wraps);
+    let wrap_v = if p.has("wrapv") { p.choice("wrapv", "repeat", &wraps) } else { wrap };
     let mut options = ImageOptions {
         filter: p.choice("filter", "bilinear", &filters),
-        wrap: p.choice("wrap", "repeat", &wraps),
+        wrap: [wrap, wrap_v],
+        channels: p.choice("channel", "", &channels),
         max_anisotropy: p.float("maxanisotropy", 8.0).max(1.0),
         encoding: Encoding::Srgb,
     };

@@ -39,35 +39,59 @@ pub enum WrapMode {
     Black,
     /// The nearest texel of the border.
     Clamp,
+    /// The picture again, every other time as in a mirror.
+    Mirror,
     /// The neighbour on the sphere, for equal-area maps of all directions.
     OctahedralSphere,
 }
 
 impl WrapMode {
-    /// The texel that stands for the one at (x, y), or `None` for black.
-    fn wrap(self, x: i64, y: i64, width: usize, height: usize) -> Option<(usize, usize)> {
-        let (w, h) = (width as i64, height as i64);
-        let (x, y) = match self {
-            _ if (0..w).contains(&x) && (0..h).contains(&y) => (x, y),
-            Self::Repeat => (x.rem_euclid(w), y.rem_euclid(h)),
-            Self::Black => return None,
-            Self::Clamp => (x.clamp(0, w - 1), y.clamp(0, h - 1)),
-            Self::OctahedralSphere => {
-                // Crossing a border comes back through the same border, mirrored about its middle.
-                let (mut x, mut y) = (x, y);
-                if !(0..w).contains(&x) {
-                    x = if x < 0 { -1 - x } else { 2 * w - 1 - x };
-                    y = h - 1 - y;
-                }
-                if !(0..h).contains(&y) {
-                    y = if y < 0 { -1 - y } else { 2 * h - 1 - y };
-                    x = w - 1 - x;
-                }
-                (x.clamp(0, w - 1), y.clamp(0, h - 1))
+    /// The index along one side of `n` texels that stands for `i`, or `None` for black.
+    fn wrap_axis(self, i: i64, n: i64) -> Option<i64> {
+        match self {
+            _ if (0..n).contains(&i) => Some(i),
+            Self::Repeat => Some(i.rem_euclid(n)),
+            Self::Black => None,
+            Self::Clamp | Self::OctahedralSphere => Some(i.clamp(0, n - 1)),
+            Self::Mirror => {
+                let i = i.rem_euclid(2 * n);
+                Some(if i < n { i } else { 2 * n - 1 - i })
             }
-        };
-        Some((x as usize, y as usize))
+        }
     }
+}
+
+/// The texel that stands for the one at (x, y), or `None` for black; `modes` are those across and down.
+fn wrap(modes: [WrapMode; 2], x: i64, y: i64, width: usize, height: usize) -> Option<(usize, usize)> {
+    let (w, h) = (width as i64, height as i64);
+    if (0..w).contains(&x) && (0..h).contains(&y) {
+        return Some((x as usize, y as usize));
+    }
+    let (mut x, mut y) = (x, y);
+    if modes[0] == WrapMode::OctahedralSphere {
+        // Crossing a border comes back through the same border, mirrored about its middle.
+        if !(0..w).contains(&x) {
+            x = if x < 0 { -1 - x } else { 2 * w - 1 - x };
+            y = h - 1 - y;
+        }
+        if !(0..h).contains(&y) {
+            y = if y < 0 { -1 - y } else { 2 * h - 1 - y };
+            x = w - 1 - x;
+        }
+    }
+    Some((modes[0].wrap_axis(x, w)? as usize, modes[1].wrap_axis(y, h)? as usize))
+}
+
+/// Which numbers of a texel are looked up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Channels {
+    /// The colours.
+    #[default]
+    Colors,
+    /// One of red, green and blue by its number; gray where there is one colour.
+    Color(u8),
+    /// The alpha of a picture that has one, else its last colour.
+    Alpha,
 }
 
 /// How an image is looked up.
@@ -75,8 +99,10 @@ impl WrapMode {
 pub struct ImageOptions {
     /// Filter.
     pub filter: ImageFilter,
-    /// Borders.
-    pub wrap: WrapMode,
+    /// What lies beyond the left and right borders, and the upper and lower ones.
+    pub wrap: [WrapMode; 2],
+    /// What is looked up.
+    pub channels: Channels,
     /// Largest ratio of the axes of the elliptic filter; thinner ellipses are widened.
     pub max_anisotropy: f32,
     /// How stored integers relate to light.
@@ -87,7 +113,8 @@ impl Default for ImageOptions {
     fn default() -> Self {
         Self {
             filter: ImageFilter::Bilinear,
-            wrap: WrapMode::Repeat,
+            wrap: [WrapMode::Repeat; 2],
+            channels: Channels::Colors,
             max_anisotropy: 8.0,
             encoding: Encoding::Srgb,
         }
@@ -95,13 +122,15 @@ impl Default for ImageOptions {
 }
 
 /// A picture ready for look-ups. `N` in its methods is 3 for linear red, green, blue (gray thrice) or 1 for the
-/// first channel.
+/// first of the channels that are looked up.
 #[derive(Clone, Debug)]
 pub struct ImageMap {
     base: Arc<Texels>,
     decode: Box<DecodeTable>,
     /// Levels 1 and up, each half as large as the one before, linear; empty if the filter needs none.
     coarser: Vec<Texels>,
+    /// First and last channel that is looked up.
+    channels: [usize; 2],
     options: ImageOptions,
 }
 
@@ -150,13 +179,25 @@ impl ImageMap {
                 level = next;
             }
         }
-        Self { base, decode, coarser, options }
+        let last_color = base.n_colors() - 1;
+        let channels = match options.channels {
+            Channels::Colors => [0, last_color],
+            Channels::Color(index) => [usize::from(index).min(last_color); 2],
+            Channels::Alpha => [base.n_channels() - 1; 2],
+        };
+        Self { base, decode, coarser, channels, options }
     }
 
     /// The loaded picture.
     #[must_use]
     pub fn texels(&self) -> &Texels {
         &self.base
+    }
+
+    /// True if the alpha is asked for that the picture does not have: it counts as 1.
+    #[must_use]
+    pub fn lacks_alpha(&self) -> bool {
+        self.options.channels == Channels::Alpha && !self.base.has_alpha()
     }
 
     /// Number of levels; 1 where the filter needs no coarser ones.
@@ -172,11 +213,11 @@ impl ImageMap {
     /// One texel of a level, wrapped.
     fn texel<const N: usize>(&self, level: usize, x: i64, y: i64) -> [f32; N] {
         let texels = self.level(level);
-        let Some((x, y)) = self.options.wrap.wrap(x, y, texels.width(), texels.height()) else {
+        let Some((x, y)) = wrap(self.options.wrap, x, y, texels.width(), texels.height()) else {
             return [0.0; N];
         };
-        let last = texels.n_colors() - 1;
-        std::array::from_fn(|channel| texels.linear(x, y, channel.min(last), &self.decode))
+        let [first, last] = self.channels;
+        std::array::from_fn(|channel| texels.linear(x, y, (first + channel).min(last), &self.decode))
     }
 
     fn bilinear<const N: usize>(&self, level: usize, st: Point2) -> [f32; N] {
@@ -243,7 +284,7 @@ impl ImageMap {
         let fine = level.floor() as usize;
         if fine == coarsest {
             // Wider than the picture: the mean, whatever the wrap.
-            return if self.options.wrap == WrapMode::Black {
+            return if self.options.wrap.contains(&WrapMode::Black) {
                 self.elliptic_level(coarsest, st, major, minor)
             } else {
                 self.bilinear(coarsest, st)

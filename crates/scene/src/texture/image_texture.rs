@@ -12,17 +12,19 @@ use super::{Mapping2, TextureContext};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ImageId(pub u32);
 
-/// A picture on a surface; numbers come from its first channel.
+/// A picture on a surface; numbers come from the first channel that is looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageTexture {
     /// Texture coordinates.
     pub mapping: Mapping2,
     /// The picture.
     pub image: ImageId,
-    /// Factor of its values.
-    pub scale: f32,
+    /// Factors of its red, green and blue; of numbers, the first.
+    pub scale: [f32; 3],
     /// Yields `1 - value` after scaling.
     pub invert: bool,
+    /// Numbers become 1 from here on and 0 below, as the last step.
+    pub cutoff: Option<f32>,
 }
 
 impl ImageTexture {
@@ -30,14 +32,25 @@ impl ImageTexture {
     #[must_use]
     pub fn eval_float(&self, image: &ImageMap, ctx: &TextureContext) -> f32 {
         let [value] = image.lookup::<1>(&self.mapping.map(ctx));
-        let value = self.scale * value;
-        if self.invert { (1.0 - value).max(0.0) } else { value }
+        self.number(value)
+    }
+
+    /// What becomes of a number of the picture.
+    #[must_use]
+    pub fn number(&self, value: f32) -> f32 {
+        let value = self.scale[0] * value;
+        let value = if self.invert { (1.0 - value).max(0.0) } else { value };
+        match self.cutoff {
+            Some(cutoff) => f32::from(u8::from(value >= cutoff)),
+            None => value,
+        }
     }
 
     /// The linear colour at a point, in the primaries of the picture, not negative.
     #[must_use]
     pub fn eval_rgb(&self, image: &ImageMap, ctx: &TextureContext) -> [f32; 3] {
-        let rgb = image.lookup::<3>(&self.mapping.map(ctx)).map(|c| self.scale * c);
+        let [r, g, b] = image.lookup::<3>(&self.mapping.map(ctx));
+        let rgb = [self.scale[0] * r, self.scale[1] * g, self.scale[2] * b];
         rgb.map(|c| if self.invert { (1.0 - c).max(0.0) } else { c.max(0.0) })
     }
 }
@@ -86,7 +99,21 @@ pub(super) const PARAMETERS: &[ParameterSpec] = &[
         kind: "string",
         default: "repeat",
         unit: "",
-        doc: "beyond the borders: repeat, black, clamp or octahedralsphere",
+        doc: "beyond the borders: repeat, black, clamp, mirror or octahedralsphere",
+    },
+    ParameterSpec {
+        name: "wrapv",
+        kind: "string",
+        default: "wrap",
+        unit: "",
+        doc: "the same beyond the upper and lower border alone",
+    },
+    ParameterSpec {
+        name: "channel",
+        kind: "string",
+        default: "",
+        unit: "",
+        doc: "one channel of the picture: r, g, b or a, which is 1 where there is none; numbers: r by default",
     },
     ParameterSpec {
         name: "maxanisotropy",
@@ -96,6 +123,20 @@ pub(super) const PARAMETERS: &[ParameterSpec] = &[
         doc: "EWA: largest ratio of the axes of the footprint",
     },
     ParameterSpec { name: "scale", kind: "float", default: "1", unit: "", doc: "factor of all values" },
+    ParameterSpec {
+        name: "tint",
+        kind: "rgb",
+        default: "1 1 1",
+        unit: "",
+        doc: "factors of red, green, blue",
+    },
+    ParameterSpec {
+        name: "cutoff",
+        kind: "float",
+        default: "",
+        unit: "",
+        doc: "numbers: 1 where the value is at least this, else 0",
+    },
     ParameterSpec { name: "invert", kind: "bool", default: "false", unit: "", doc: "yield 1 - value" },
     ParameterSpec {
         name: "encoding",

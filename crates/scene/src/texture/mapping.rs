@@ -48,6 +48,15 @@ pub enum Mapping2 {
         /// Shift of t.
         dv: f32,
     },
+    /// By the surface parameters, scaled and turned: `s = a u + b v + du`, `t = c u + d v + dv`.
+    TurnedUv {
+        /// `[[a, b], [c, d]]`.
+        rows: [[f32; 2]; 2],
+        /// Shift of s.
+        du: f32,
+        /// Shift of t.
+        dv: f32,
+    },
     /// By direction from the origin: s is the angle from +z over pi, t the longitude over 2 pi.
     Spherical(Transform),
     /// By longitude over 2 pi (from -x) and by z.
@@ -154,6 +163,13 @@ impl Mapping2 {
             doc: "uv, planar: shift along v",
         },
         ParameterSpec {
+            name: "uvrotation",
+            kind: "float",
+            default: "0",
+            unit: "deg",
+            doc: "uv: turns (u, v) from u towards v, after scaling and before shifting",
+        },
+        ParameterSpec {
             name: "v1",
             kind: "vector3",
             default: "1 0 0",
@@ -179,6 +195,13 @@ impl Mapping2 {
                 dsdy: su * ctx.dudy,
                 dtdx: sv * ctx.dvdx,
                 dtdy: sv * ctx.dvdy,
+            },
+            Self::TurnedUv { rows: [[a, b], [c, d]], du, dv } => Coordinates2 {
+                st: Point2::new(a * ctx.uv.x + b * ctx.uv.y + du, c * ctx.uv.x + d * ctx.uv.y + dv),
+                dsdx: a * ctx.dudx + b * ctx.dvdx,
+                dsdy: a * ctx.dudy + b * ctx.dvdy,
+                dtdx: c * ctx.dudx + d * ctx.dvdx,
+                dtdy: c * ctx.dudy + d * ctx.dvdy,
             },
             Self::Spherical(texture_from_world) => spherical(&map_point(texture_from_world, ctx)),
             Self::Cylindrical(texture_from_world) => cylindrical(&map_point(texture_from_world, ctx)),
@@ -207,12 +230,15 @@ impl Mapping2 {
         ];
         let texture_from_world = world_from_texture.inverse();
         match parameters.choice("mapping", "uv", &choices) {
-            Kind::Uv => Self::Uv {
-                su: parameters.float("uscale", 1.0),
-                sv: parameters.float("vscale", 1.0),
-                du: parameters.float("udelta", 0.0),
-                dv: parameters.float("vdelta", 0.0),
-            },
+            Kind::Uv => {
+                let (su, sv) = (parameters.float("uscale", 1.0), parameters.float("vscale", 1.0));
+                let (du, dv) = (parameters.float("udelta", 0.0), parameters.float("vdelta", 0.0));
+                let (sin, cos) = parameters.float("uvrotation", 0.0).to_radians().sin_cos();
+                if sin == 0.0 && cos == 1.0 {
+                    return Self::Uv { su, sv, du, dv };
+                }
+                Self::TurnedUv { rows: [[su * cos, -sv * sin], [su * sin, sv * cos]], du, dv }
+            }
             Kind::Spherical => Self::Spherical(texture_from_world),
             Kind::Cylindrical => Self::Cylindrical(texture_from_world),
             Kind::Planar => Self::Planar {

@@ -37,7 +37,7 @@ pub use checkerboard::{CheckMapping, Checkerboard};
 pub use dots::Dots;
 pub use fractal::{Fbm, Windy, Wrinkled};
 pub use handle::{FloatTexture, FloatTextureId, SpectrumTexture, SpectrumTextureId, TextureContext};
-pub use image_map::{ImageFilter, ImageMap, ImageOptions, WrapMode};
+pub use image_map::{Channels, ImageFilter, ImageMap, ImageOptions, WrapMode};
 pub use image_texture::{ImageId, ImageTexture, SpectrumImageTexture};
 pub use mapping::{Coordinates2, Coordinates3, Mapping2, Mapping3};
 pub use marble::Marble;

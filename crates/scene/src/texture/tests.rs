@@ -77,7 +77,10 @@ fn gray(width: usize, height: usize, values: &[u8]) -> Arc<Texels> {
 
 fn image_map(texels: &Arc<Texels>, filter: ImageFilter, wrap: WrapMode) -> ImageMap {
     let encoding = Encoding::Linear;
-    ImageMap::new(texels.clone(), ImageOptions { filter, wrap, encoding, ..ImageOptions::default() })
+    ImageMap::new(
+        texels.clone(),
+        ImageOptions { filter, wrap: [wrap; 2], encoding, ..ImageOptions::default() },
+    )
 }
 
 const FILTERS: [ImageFilter; 4] =

@@ -80,7 +80,7 @@ fn encodings_are_decoded_before_filtering() {
         (Encoding::Srgb, srgb_decode(stored)),
         (Encoding::Gamma(2.0), stored * stored),
     ] {
-        let options = ImageOptions { encoding, wrap: WrapMode::Clamp, ..ImageOptions::default() };
+        let options = ImageOptions { encoding, wrap: [WrapMode::Clamp; 2], ..ImageOptions::default() };
         let map = ImageMap::new(texels.clone(), options);
         let value = |s: f32| map.lookup::<1>(&plane(Point2::new(s, 0.5)))[0];
         assert!((value(0.75) - full).abs() < 1e-6, "{encoding:?}");
