@@ -92,14 +92,6 @@ impl Json {
         }
     }
 
-    /// The members of an object; empty for anything else.
-    pub(crate) fn members(&self) -> &[(Box<str>, Self)] {
-        match &self.kind {
-            Kind::Object(members) => members,
-            _ => &[],
-        }
-    }
-
     /// The path to the value that starts at that byte (RFC 6901), as far as it can be followed.
     pub(crate) fn pointer(&self, start: u32) -> String {
         let (mut path, mut here) = (String::new(), self);

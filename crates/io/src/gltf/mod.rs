@@ -212,8 +212,10 @@ impl<'a> Reader<'a> {
                 Some(())
             }
             None => {
-                self.file
-                    .error(at, "the file uses the same data too often: there would be too many vertices");
+                if self.spent.replace(u64::MAX) != u64::MAX {
+                    let message = "the file uses the same data too often: there would be too many vertices";
+                    self.file.error(at, message);
+                }
                 None
             }
         }
