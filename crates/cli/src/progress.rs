@@ -77,6 +77,7 @@ pub(crate) struct Watch {
     n_samples: AtomicU64,
     closest: AtomicU64,
     shadow: AtomicU64,
+    interpolated: AtomicU64,
 }
 
 impl fmt::Debug for Watch {
@@ -126,6 +127,7 @@ impl Watch {
             n_samples: AtomicU64::new(0),
             closest: AtomicU64::new(0),
             shadow: AtomicU64::new(0),
+            interpolated: AtomicU64::new(0),
         }
     }
 
@@ -141,6 +143,7 @@ impl Watch {
         RayCounts {
             closest: self.closest.load(Ordering::Relaxed),
             shadow: self.shadow.load(Ordering::Relaxed),
+            interpolated: self.interpolated.load(Ordering::Relaxed),
         }
     }
 
@@ -172,6 +175,7 @@ impl Observer for Watch {
         self.n_samples.fetch_add(n_samples, Ordering::Relaxed);
         self.closest.fetch_add(rays.closest, Ordering::Relaxed);
         self.shadow.fetch_add(rays.shadow, Ordering::Relaxed);
+        self.interpolated.fetch_add(rays.interpolated, Ordering::Relaxed);
         self.bar.inc(n_samples);
         self.flow()
     }

@@ -224,6 +224,7 @@ fn statistics(
         passes: job.film.n_passes(),
         spp: job.film.n_passes(),
         samples: watch.n_samples(),
+        interpolated_samples: rays.interpolated,
         rays: rays.closest,
         shadow_rays: rays.shadow,
         photons_stored: 0,

@@ -33,6 +33,8 @@ pub(crate) struct Statistics {
     pub(crate) spp: u64,
     /// Camera samples taken in this run.
     pub(crate) samples: u64,
+    /// Those of them that were interpolated from others, and so cost no ray; 0 unless pixels are adaptive.
+    pub(crate) interpolated_samples: u64,
     /// Rays that looked for the nearest hit.
     pub(crate) rays: u64,
     /// Rays that asked for visibility.

@@ -86,11 +86,13 @@ impl<'a> Control<'a> {
     }
 }
 
-/// Rays traced.
+/// Rays traced, and spared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RayCounts {
     /// Rays that look for the nearest hit.
     pub closest: u64,
     /// Rays that ask whether anything is in the way.
     pub shadow: u64,
+    /// Pixels of passes that were interpolated and cost none.
+    pub interpolated: u64,
 }

@@ -2,6 +2,7 @@
 //!
 //! Knows neither files nor terminals, clocks or thread pools; nothing here can fail.
 
+pub mod ambient_occlusion;
 pub mod integrator;
 pub mod lpe;
 pub mod method;

@@ -5,6 +5,7 @@ use etendue_scene::diagnostics::{Diagnostics, nearest_name};
 use etendue_scene::document::Entity;
 use etendue_scene::parameters::{BuildContext, ParameterSpec, Parameters};
 
+use crate::ambient_occlusion::{AmbientOcclusion, OcclusionSettings};
 use crate::integrator::Integrator;
 use crate::lpe::PathExpressions;
 use crate::path_tracing::{PathSettings, PathTracer};
@@ -25,21 +26,34 @@ pub struct MethodSpec {
 }
 
 /// All methods.
-pub const INTEGRATORS: &[MethodSpec] = &[MethodSpec {
-    name: "path",
-    doc: "path tracing with next event estimation, multiple importance sampling and Russian roulette",
-    unbiased: true,
-    consistent: true,
-    parameters: PathSettings::PARAMETERS,
-}];
+pub const INTEGRATORS: &[MethodSpec] = &[
+    MethodSpec {
+        name: "path",
+        doc: "path tracing with next event estimation, multiple importance sampling and Russian roulette",
+        unbiased: true,
+        consistent: true,
+        parameters: PathSettings::PARAMETERS,
+    },
+    MethodSpec {
+        name: "ao",
+        doc: "ambient occlusion: how much of the sky each surface sees, whatever lights there are",
+        unbiased: false,
+        consistent: false,
+        parameters: OcclusionSettings::PARAMETERS,
+    },
+];
 
-/// Other names of the path tracer.
-const PATH_ALIASES: &[&str] = &["volpath", "simplepath", "simplevolpath", "randomwalk"];
+/// Other names of methods.
+const ALIASES: &[(&str, &str)] = &[
+    ("volpath", "path"),
+    ("simplepath", "path"),
+    ("simplevolpath", "path"),
+    ("randomwalk", "path"),
+    ("ambientocclusion", "ao"),
+];
 
 /// Methods that scene files name and that are still to come.
 const COMING: &[&str] = &[
-    "ambientocclusion",
-    "ao",
     "aov",
     "bdpt",
     "distribution",
@@ -64,7 +78,13 @@ const FOREIGN_PARAMETERS: &[&str] = &["samplebsdf", "samplelights"];
 /// of the one that stands in for it.
 #[must_use]
 pub fn method_name(name: &str) -> &'static str {
-    INTEGRATORS.iter().find(|m| m.name == name).map_or("path", |m| m.name)
+    known_name(name).unwrap_or("path")
+}
+
+/// The name of the method of that name, or that it is another name of.
+fn known_name(name: &str) -> Option<&'static str> {
+    let name = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, name)| name);
+    INTEGRATORS.iter().find(|m| m.name == name).map(|m| m.name)
 }
 
 /// The method that an entity names, which fills layers by these expressions; a name that is known and not available
@@ -78,34 +98,64 @@ pub fn method(entity: &Entity, expressions: PathExpressions) -> (Option<Box<dyn 
     if is_coming {
         let message = format!("the integrator \"{name}\" is not available yet; \"path\" stands in for it");
         context.diagnostics.warning(entity.span, message);
-    } else if name != "path" && !PATH_ALIASES.contains(&name) {
-        let own = INTEGRATORS.iter().map(|m| m.name);
-        let known = own.chain(PATH_ALIASES.iter().copied()).chain(COMING.iter().copied());
-        let near = nearest_name(name, known);
-        let error = context.diagnostics.error(entity.span, format!("unknown integrator \"{name}\""));
-        error.with_help(match near {
-            Some(near) => format!("did you mean \"{near}\"?"),
-            None => "`etendue list integrators` shows them".to_owned(),
-        });
+    } else if known_name(name).is_none() {
+        report_unknown(entity, &mut context.diagnostics);
         return (None, context.diagnostics);
     }
     let mut p = Parameters::new(entity, &mut context);
-    let settings = PathSettings::from_parameters(&mut p);
-    let span_of_reuse = p.span_of("reuse");
+    let integrator: Box<dyn Integrator> = match method_name(name) {
+        "ao" => read_occlusion(&mut p, expressions),
+        _ => read_path(&mut p, expressions, is_coming),
+    };
+    p.finish();
+    let integrator = (!context.diagnostics.has_errors()).then_some(integrator);
+    (integrator, context.diagnostics)
+}
+
+fn report_unknown(entity: &Entity, diagnostics: &mut Diagnostics) {
+    let name = entity.type_name.as_str();
+    let own = INTEGRATORS.iter().map(|m| m.name);
+    let known = own.chain(ALIASES.iter().map(|(alias, _)| *alias)).chain(COMING.iter().copied());
+    let near = nearest_name(name, known);
+    let error = diagnostics.error(entity.span, format!("unknown integrator \"{name}\""));
+    error.with_help(match near {
+        Some(near) => format!("did you mean \"{near}\"?"),
+        None => "`etendue list integrators` shows them".to_owned(),
+    });
+}
+
+fn read_path(
+    p: &mut Parameters<'_, '_>,
+    expressions: PathExpressions,
+    is_stand_in: bool,
+) -> Box<dyn Integrator> {
+    let settings = PathSettings::from_parameters(p);
     for foreign in FOREIGN_PARAMETERS {
         p.ignore(foreign);
     }
-    if is_coming {
+    if is_stand_in {
         // What another method is told says nothing to the one that stands in for it.
         p.accept_all();
     }
-    p.finish();
-    if context.diagnostics.has_errors() {
-        return (None, context.diagnostics);
-    }
     if settings.reuse > 1 && !expressions.is_empty() {
+        let span = p.span_of("reuse");
         let message = "layers by path expression need paths of their own: \"reuse\" is taken as 1";
-        context.diagnostics.warning(span_of_reuse, message);
+        p.diagnostics().warning(span, message);
     }
-    (Some(Box::new(PathTracer::new(settings, expressions))), context.diagnostics)
+    if settings.adaptive.is_some() && (settings.reuse > 1 || !expressions.is_empty()) {
+        let span = p.span_of("pixels");
+        let message = "neither layers by path expression nor \"reuse\" go with interpolation: all \"pixels\" are traced";
+        p.diagnostics().warning(span, message);
+    }
+    Box::new(PathTracer::new(settings, expressions))
+}
+
+fn read_occlusion(p: &mut Parameters<'_, '_>, expressions: PathExpressions) -> Box<dyn Integrator> {
+    let settings = OcclusionSettings::from_parameters(p);
+    if !expressions.is_empty() {
+        let span = p.span();
+        let message = "ambient occlusion has no paths: layers by path expression stay black";
+        p.diagnostics().warning(span, message);
+    }
+    Box::new(AmbientOcclusion::new(settings, expressions))
 }

@@ -36,10 +36,13 @@ pub struct PathTracer {
 
 impl PathTracer {
     /// A path tracer that fills the film's layers by these expressions, in their order. Where there are any, paths are not
-    /// shared.
+    /// shared and pixels not interpolated; nor are they where paths are shared.
     #[must_use]
     pub fn new(mut settings: PathSettings, expressions: PathExpressions) -> Self {
         settings.reuse = if expressions.is_empty() { settings.reuse.clamp(1, MAX_REUSE) } else { 1 };
+        if !expressions.is_empty() || settings.reuse > 1 {
+            settings.adaptive = None;
+        }
         Self { settings, expressions, tiles: Vec::new() }
     }
 }
@@ -55,6 +58,7 @@ impl Integrator for PathTracer {
             wavelengths: settings.wavelengths,
             expressions: &self.expressions,
             group_size: settings.reuse,
+            adaptive: settings.adaptive,
         };
         if settings.reuse > 1 {
             camera_pass.run(scene, pass, film, control, &mut self.tiles, &Reuse { settings })

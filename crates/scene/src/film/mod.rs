@@ -64,6 +64,26 @@ impl Features {
         values[14] = self.depth;
         values
     }
+
+    /// The weighted sum of features: of interpolated pixels.
+    #[must_use]
+    pub fn mean(features: &[Self], weights: &[f32]) -> Self {
+        let mut values = [0.0; 15];
+        for (features, weight) in features.iter().zip(weights) {
+            for (sum, value) in values.iter_mut().zip(features.to_array()) {
+                *sum += value * weight;
+            }
+        }
+        let three = |i: usize| [values[i], values[i + 1], values[i + 2]];
+        Self {
+            albedo: three(0),
+            position: three(3),
+            normal: three(6),
+            shading_normal: three(9),
+            uv: [values[12], values[13]],
+            depth: values[14],
+        }
+    }
 }
 
 /// The channels of a film beyond colour.

@@ -132,7 +132,8 @@ impl FilmSettings {
     }
 
     /// White light of the output colour space, of luminance 1.
-    fn white(&self, lambda: &Wavelengths) -> Sampled {
+    #[must_use]
+    pub fn white(&self, lambda: &Wavelengths) -> Sampled {
         let space = ColorSpace::get(self.color_space);
         if lambda.is_bands() {
             return lambda.of_bands(space.light_bands([1.0 / CIE_Y_INTEGRAL; 3]));

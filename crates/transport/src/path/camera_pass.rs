@@ -10,6 +10,7 @@ use etendue_scene::{Film, Scene};
 use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;
 
+use super::adaptive::{AdaptivePixels, PassPixel};
 use crate::integrator::{Control, PassEnd, RayCounts};
 use crate::lpe::{LayerRecorder, PathExpressions};
 
@@ -45,13 +46,14 @@ pub struct Tracer<'s> {
     pub scene: &'s Scene,
     closest: Cell<u64>,
     shadow: Cell<u64>,
+    interpolated: Cell<u64>,
 }
 
 impl<'s> Tracer<'s> {
     /// Starts counting.
     #[must_use]
     pub const fn new(scene: &'s Scene) -> Self {
-        Self { scene, closest: Cell::new(0), shadow: Cell::new(0) }
+        Self { scene, closest: Cell::new(0), shadow: Cell::new(0), interpolated: Cell::new(0) }
     }
 
     /// The nearest surface along the ray.
@@ -71,7 +73,11 @@ impl<'s> Tracer<'s> {
     /// Rays so far.
     #[must_use]
     pub fn counts(&self) -> RayCounts {
-        RayCounts { closest: self.closest.get(), shadow: self.shadow.get() }
+        RayCounts {
+            closest: self.closest.get(),
+            shadow: self.shadow.get(),
+            interpolated: self.interpolated.get(),
+        }
     }
 }
 
@@ -84,6 +90,8 @@ pub struct CameraPass<'p> {
     pub expressions: &'p PathExpressions,
     /// Pixels across and down of a group, whose paths have wavelengths and time in common.
     pub group_size: u32,
+    /// Interpolates pixels; each is then a group of its own, and there are no layers.
+    pub adaptive: Option<AdaptivePixels>,
 }
 
 /// How a method follows the paths of a group of pixels.
@@ -164,11 +172,15 @@ impl CameraPass<'_> {
         method: &F,
     ) -> TileSamples {
         let mut layers = self.expressions.recorder();
+        if let Some(adaptive) = &self.adaptive {
+            self.run_adaptive(tracer, pass, &mut tile, method, adaptive);
+            return tile.finish();
+        }
         let mut group = Vec::with_capacity((self.group_size * self.group_size) as usize);
         for bounds in tile.bounds().tiles(self.group_size) {
             let mut common = None;
             for pixel in bounds.pixels() {
-                let start = CameraSample::new(tracer.scene, pixel, pass, &mut common);
+                let start = CameraSample::new(tracer.scene, pixel, pixel, pass, &mut common);
                 let features = tile.wants_features().then(Features::default);
                 layers.restart();
                 group.push(self.follow(tracer, start, features, &mut layers, method));
@@ -188,6 +200,37 @@ impl CameraPass<'_> {
         tile.finish()
     }
 
+    /// Fills a tile by paths for some of its pixels, which all have the same random numbers.
+    fn run_adaptive<F: Follow>(
+        &self,
+        tracer: &Tracer<'_>,
+        pass: u64,
+        tile: &mut FilmTile<'_>,
+        method: &F,
+        adaptive: &AdaptivePixels,
+    ) {
+        let (bounds, wants_features) = (tile.bounds(), tile.wants_features());
+        let mut layers = self.expressions.recorder();
+        let mut filter_weight = 1.0;
+        let (pixels, n_interpolated) = adaptive.fill(bounds, pass, |pixel| {
+            let start = CameraSample::new(tracer.scene, pixel, [0, 0], pass, &mut None);
+            let features = wants_features.then(Features::default);
+            layers.restart();
+            let path = self.follow(tracer, start, features, &mut layers, method);
+            filter_weight = path.filter_weight;
+            PassPixel {
+                radiance: path.radiance * path.camera_weight,
+                lambda: path.lambda,
+                features: path.features,
+            }
+        });
+        tracer.interpolated.set(tracer.interpolated.get() + n_interpolated);
+        for (pixel, PassPixel { radiance, lambda, features }) in bounds.pixels().zip(pixels) {
+            let sample = PixelSample { radiance, lambda: &lambda, filter_weight, features, layers: &[] };
+            tile.add(pixel, &sample);
+        }
+    }
+
     fn follow<F: Follow>(
         &self,
         tracer: &Tracer<'_>,
@@ -196,14 +239,15 @@ impl CameraPass<'_> {
         layers: &mut LayerRecorder<'_>,
         method: &F,
     ) -> FollowedPath<F::Left> {
-        let CameraSample { pixel, pass, mut sampler, common, p_film, u_lens, filter_weight } = start;
+        let CameraSample { pixel, numbers_of, pass, mut sampler, common, p_film, u_lens, filter_weight } =
+            start;
         let mut lambda = self.wavelengths.sample(common.u_lambda);
         let (mut radiance, mut left, mut camera_weight) = (Sampled::ZERO, F::Left::default(), 0.0);
         if let Some(CameraRay { ray, weight }) = tracer.scene.camera.sample_ray(p_film, u_lens, common.u_time)
         {
             let mut path = CameraPath {
                 ray,
-                pixel,
+                numbers_of,
                 pass,
                 lambda: &mut lambda,
                 sampler: &mut sampler,
@@ -222,6 +266,8 @@ impl CameraPass<'_> {
 #[derive(Debug)]
 struct CameraSample {
     pixel: [u32; 2],
+    /// The pixel whose random numbers it has.
+    numbers_of: [u32; 2],
     pass: u64,
     /// The numbers of the path from here on.
     sampler: Sampler,
@@ -232,14 +278,21 @@ struct CameraSample {
 }
 
 impl CameraSample {
-    /// A sample of a pixel, with what its group has in common; the first of a group decides that.
-    fn new(scene: &Scene, pixel: [u32; 2], pass: u64, common: &mut Option<Common>) -> Self {
-        let mut sampler = Sampler::new(&scene.sampler, pixel, pass);
+    /// A sample of a pixel by the random numbers of one, with what its group has in common; the first of a group decides that.
+    fn new(
+        scene: &Scene,
+        pixel: [u32; 2],
+        numbers_of: [u32; 2],
+        pass: u64,
+        common: &mut Option<Common>,
+    ) -> Self {
+        let mut sampler = Sampler::new(&scene.sampler, numbers_of, pass);
         let u_lambda = sampler.next_1d();
         let filter = scene.filter.sample(sampler.next_2d());
         let own = Common { u_lambda, u_time: sampler.next_1d() };
         Self {
             pixel,
+            numbers_of,
             pass,
             common: *common.get_or_insert(own),
             p_film: Point2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5) + filter.offset,
@@ -255,8 +308,8 @@ impl CameraSample {
 pub struct CameraPath<'p, 'e> {
     /// The ray from the camera.
     pub ray: Ray,
-    /// The pixel it belongs to.
-    pub pixel: [u32; 2],
+    /// The pixel whose random numbers it has: its own, but where pixels are interpolated.
+    pub numbers_of: [u32; 2],
     /// Its number among the pixel's samples.
     pub pass: u64,
     /// Its wavelengths; dispersion reduces them.
@@ -286,7 +339,7 @@ impl CameraPath<'_, '_> {
             let seed = hash64(&[settings.seed, u64::from(n)]);
             let samples_per_pixel = settings.samples_per_pixel.saturating_mul(n);
             let settings = SamplerSettings { seed, samples_per_pixel, ..*settings };
-            Sampler::new(&settings, self.pixel, self.pass * u64::from(n) + u64::from(part))
+            Sampler::new(&settings, self.numbers_of, self.pass * u64::from(n) + u64::from(part))
         };
         let whole = std::mem::replace(self.sampler, own);
         let result = work(self);

@@ -4,6 +4,7 @@ use etendue_scene::document::{Entity, Value};
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
 use crate::lpe::SHARP_ALPHA;
+use crate::path::adaptive::AdaptivePixels;
 use crate::path::camera_pass::WavelengthMode;
 
 /// Largest side of a group of pixels that share paths.
@@ -46,6 +47,8 @@ pub struct PathSettings {
     pub lights: LightStrategy,
     /// How wavelengths are chosen.
     pub wavelengths: WavelengthMode,
+    /// Interpolates pixels; biased.
+    pub adaptive: Option<AdaptivePixels>,
 }
 
 impl Default for PathSettings {
@@ -62,6 +65,7 @@ impl Default for PathSettings {
             sharp_alpha: SHARP_ALPHA,
             lights: LightStrategy::default(),
             wavelengths: WavelengthMode::default(),
+            adaptive: None,
         }
     }
 }
@@ -153,6 +157,9 @@ impl PathSettings {
             unit: "",
             doc: "wavelengths of a path: hero (four), single, or bands (linear sRGB, as renderers without spectra)",
         },
+        AdaptivePixels::PIXELS,
+        AdaptivePixels::CONTRAST,
+        AdaptivePixels::BLOCK_SIZE,
     ];
 
     /// Reads the parameters of an integrator entity.
@@ -179,6 +186,7 @@ impl PathSettings {
             ("bands", WavelengthMode::Bands),
         ];
         let wavelengths = p.choice("wavelengths", "hero", &modes);
+        let adaptive = AdaptivePixels::from_parameters(p);
         // Read where the scene is built.
         p.ignore("lightsampler");
         Self {
@@ -193,6 +201,7 @@ impl PathSettings {
             sharp_alpha,
             lights,
             wavelengths,
+            adaptive,
         }
     }
 

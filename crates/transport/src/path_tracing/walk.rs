@@ -4,16 +4,16 @@ use etendue_geometry::Reference;
 use etendue_math::Ray;
 use etendue_scene::Scene;
 use etendue_scene::bsdf::{Bsdf, BsdfSample, Lobes, TransportMode};
-use etendue_scene::film::{AovSpace, Features, FilmKind};
 use etendue_scene::light::LightId;
 use etendue_scene::medium::MediumId;
 use etendue_scene::scene::Surface;
-use etendue_spectrum::{Sampled, Wavelengths};
+use etendue_spectrum::Sampled;
 
 use super::{LightStrategy, PathSettings};
 use crate::lpe::{Event, LayerRecorder};
 use crate::path::camera_pass::{CameraPath, Tracer};
 use crate::path::direct::{Candidate, choose_light, visibility};
+use crate::path::features::describe;
 use crate::path::mis::power_heuristic;
 use crate::path::roulette::survival_probability;
 
@@ -421,26 +421,5 @@ fn event_of(sample: &BsdfSample, sharp_alpha: f32) -> Event {
         Event::glossy(sample.roughness, sharp_alpha)
     } else {
         Event::Diffuse
-    }
-}
-
-/// Features of a surface for the auxiliary channels.
-fn describe(scene: &Scene, surface: &Surface, bsdf: &Bsdf, lambda: &Wavelengths) -> Features {
-    let point = &surface.point;
-    let camera_from_world = scene.camera.transform_at(surface.time).inverse();
-    let p_camera = camera_from_world.point(point.p);
-    let to_array =
-        |n: etendue_math::Normal3| n.as_vector().try_normalized().map_or([0.0; 3], |n| [n.x, n.y, n.z]);
-    let (position, normal, shading_normal) = match scene.film.kind {
-        FilmKind::GBuffer(AovSpace::World) => (point.p, point.ng, bsdf.ns()),
-        _ => (p_camera, camera_from_world.normal(point.ng), camera_from_world.normal(bsdf.ns())),
-    };
-    Features {
-        albedo: scene.film.white_rgb(bsdf.albedo(surface.wo), lambda),
-        position: [position.x, position.y, position.z],
-        normal: to_array(normal),
-        shading_normal: to_array(shading_normal),
-        uv: [point.uv.x, point.uv.y],
-        depth: p_camera.z,
     }
 }

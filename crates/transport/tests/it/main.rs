@@ -5,6 +5,8 @@
 
 mod support;
 
+mod adaptive;
+mod ambient_occlusion;
 mod bands;
 mod branching;
 mod convergence;
@@ -15,6 +17,7 @@ mod furnace;
 mod layers;
 mod media;
 mod merging;
+mod motion;
 mod passes;
 mod pictures;
 mod radiometry;
