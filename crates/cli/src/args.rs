@@ -26,6 +26,8 @@ pub(crate) enum Command {
     List(ListArguments),
     /// Measure how two images differ
     Compare(CompareArguments),
+    /// Write a scene of any format as a pbrt-v4 scene
+    Convert(ConvertArguments),
     /// Add renders that were split over passes, or that are independent
     Merge(MergeArguments),
     /// Turn radiance into a picture for a display
@@ -195,6 +197,18 @@ pub(crate) enum MapArgument {
     Absolute,
     /// Squared difference relative to the reference
     Relative,
+}
+
+/// Arguments of `convert`.
+#[derive(Args, Debug)]
+pub(crate) struct ConvertArguments {
+    /// Scene: .pbrt, .gltf, .glb, .xml (Mitsuba), .obj or .ply
+    pub(crate) scene: PathBuf,
+    /// Output: NAME.pbrt; meshes and pictures that no file holds go to NAME-meshes and NAME-textures
+    pub(crate) output: PathBuf,
+    /// Leave out warnings
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
 }
 
 /// Arguments of `merge`.

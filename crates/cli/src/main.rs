@@ -7,6 +7,7 @@ mod args;
 mod bench;
 mod brdf;
 mod compare;
+mod convert;
 mod failure;
 mod info;
 mod list;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
         Command::Info(arguments) => info::run(&arguments),
         Command::List(arguments) => list::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Convert(arguments) => convert::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
         Command::Tonemap(arguments) => tonemap::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),

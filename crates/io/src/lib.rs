@@ -21,6 +21,7 @@ pub mod pbrt;
 pub mod ply;
 pub mod scene_file;
 pub mod spd;
+pub mod stage;
 pub mod tensor;
 
 mod file;
@@ -36,6 +37,7 @@ pub use images::{ImageError, read_image, read_texels, read_texels_from, write_im
 pub use lens::read_lens;
 pub use measured::{measured_bytes, read_measured};
 pub use mitsuba::read_mitsuba;
+pub use obj::read_obj;
 pub use pbrt::{read_pbrt, read_pbrt_str, write_pbrt};
 pub use ply::{read_ply, write_ply};
 pub use scene_file::read_scene;

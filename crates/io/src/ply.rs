@@ -8,6 +8,7 @@
 mod attributes;
 mod body;
 mod header;
+mod scene;
 mod write;
 
 #[cfg(test)]
@@ -22,6 +23,7 @@ use crate::file::decompressed;
 use attributes::{Column, columns_of};
 use body::Body;
 use header::{Element, Header, PropertyKind};
+pub use scene::read_bare_ply;
 pub use write::write_ply;
 
 /// A mesh with what was odd about its file.

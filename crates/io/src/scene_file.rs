@@ -9,7 +9,9 @@ use etendue_scene::{Diagnostics, Document};
 use crate::file::decompressed;
 use crate::gltf::read_gltf;
 use crate::mitsuba::read_mitsuba;
+use crate::obj::read_obj;
 use crate::pbrt::read_pbrt;
+use crate::ply::read_bare_ply;
 
 #[cfg(test)]
 mod tests;
@@ -54,8 +56,8 @@ pub fn read_scene(path: &Path) -> (Document, Diagnostics) {
         Format::Pbrt => read_pbrt(path),
         Format::Gltf => read_gltf(path),
         Format::Mitsuba => read_mitsuba(path),
-        Format::Obj => unavailable(path, "OBJ"),
-        Format::Ply => unavailable(path, "PLY as a scene"),
+        Format::Obj => read_obj(path),
+        Format::Ply => read_bare_ply(path),
     }
 }
 
@@ -63,10 +65,6 @@ fn failed(message: &str) -> (Document, Diagnostics) {
     let mut diagnostics = Diagnostics::default();
     diagnostics.error(None, message);
     (Document::default(), diagnostics)
-}
-
-fn unavailable(path: &Path, format: &str) -> (Document, Diagnostics) {
-    failed(&format!("`{}`: {format} is not available yet", path.display()))
 }
 
 fn format_of_name(path: &Path) -> Option<Format> {

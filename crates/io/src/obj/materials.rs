@@ -56,7 +56,8 @@ impl Converter<'_> {
         }
         let peak = |color: super::mtl::Placed<[f32; 3]>| color.map_or(0.0, |(c, _)| c[0].max(c[1]).max(c[2]));
         let is_glossy = peak(mtl.ks) > 0.0;
-        let is_metal = is_glossy && (matches!(illum, 3 | 5) || peak(mtl.kd) < 0.02) && mtl.map("kd").is_none();
+        let is_metal =
+            is_glossy && (matches!(illum, 3 | 5) || peak(mtl.kd) < 0.02) && mtl.map("kd").is_none();
         match illum {
             4 | 6 | 7 | 9 => self.dielectric(mtl),
             _ if is_metal => self.conductor(mtl),
@@ -75,7 +76,8 @@ impl Converter<'_> {
     fn principled(&mut self, mtl: &Mtl) -> Entity {
         let mut material = Entity::new("principled");
         self.base_color(mtl, &mut material, "basecolor", 0.8);
-        let numbers = [("Pm", "metallic"), ("Pc", "clearcoat"), ("Pcr", "clearcoatroughness"), ("aniso", "anisotropy")];
+        let numbers =
+            [("Pm", "metallic"), ("Pc", "clearcoat"), ("Pcr", "clearcoatroughness"), ("aniso", "anisotropy")];
         for (theirs, ours) in numbers {
             if let Some((value, span)) = mtl.number(theirs) {
                 material.parameters.push(placed(ours, Value::Floats(vec![value.clamp(0.0, 1.0)]), span));
@@ -85,7 +87,11 @@ impl Converter<'_> {
             material.parameters.push(placed("sheencolor", Value::Rgb(vec![[sheen.min(1.0); 3]]), span));
         }
         if let Some((roughness, span)) = mtl.number("Pr") {
-            material.parameters.push(placed("roughness", Value::Floats(vec![roughness.clamp(0.0, 1.0)]), span));
+            material.parameters.push(placed(
+                "roughness",
+                Value::Floats(vec![roughness.clamp(0.0, 1.0)]),
+                span,
+            ));
         } else if let Some((alpha, span)) = alpha_of_exponent(mtl) {
             material.parameters.push(placed("roughness", Value::Floats(vec![alpha.sqrt()]), span));
         }

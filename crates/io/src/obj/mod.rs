@@ -4,14 +4,21 @@
 //! one material make one shape. Curves, surfaces, lines and points are skipped. A face without normals is flat unless it
 //! has a smoothing group.
 
+mod materials;
 mod mesh;
+mod mtl;
 mod parse;
 mod polygon;
+mod scene;
 #[cfg(test)]
 mod tests;
 
 use etendue_scene::diagnostics::{FileId, Severity};
 use etendue_scene::{Diagnostics, LoadedMesh};
+
+pub use scene::{read_obj, read_obj_bytes};
+
+pub(crate) use scene::bare_material;
 
 /// Reads all faces of a file as one mesh, with what was odd about it.
 ///

@@ -183,23 +183,19 @@ fn read_color(rest: &str, span: Span, diagnostics: &mut Diagnostics) -> Option<[
 
 /// Options, then the name of a file, which may have spaces.
 fn read_map(rest: &str, span: Span, diagnostics: &mut Diagnostics) -> Option<Map> {
-    let mut map = Map {
-        file: String::new(),
-        scale: [1.0; 2],
-        offset: [0.0; 2],
-        is_clamped: false,
-        bump: 1.0,
-        span,
-    };
+    let mut map =
+        Map { file: String::new(), scale: [1.0; 2], offset: [0.0; 2], is_clamped: false, bump: 1.0, span };
     let mut rest = rest;
     while let Some(option) = rest.split_ascii_whitespace().next().filter(|word| word.starts_with('-')) {
         rest = rest_of(rest, option);
         let (least, most) = match option {
             "-s" | "-o" | "-t" => (1, 3),
             "-mm" => (2, 2),
-            "-blendu" | "-blendv" | "-clamp" | "-cc" | "-bm" | "-boost" | "-texres" | "-imfchan" | "-type" => (1, 1),
+            "-blendu" | "-blendv" | "-clamp" | "-cc" | "-bm" | "-boost" | "-texres" | "-imfchan"
+            | "-type" => (1, 1),
             _ => {
-                diagnostics.warning(span, format!("the option `{option}` is not known; the picture is skipped"));
+                diagnostics
+                    .warning(span, format!("the option `{option}` is not known; the picture is skipped"));
                 return None;
             }
         };
@@ -213,7 +209,8 @@ fn read_map(rest: &str, span: Span, diagnostics: &mut Diagnostics) -> Option<Map
             words.push(word);
             rest = rest_of(rest, word);
         }
-        let numbers: Vec<f32> = words.iter().filter_map(|word| word.parse().ok()).filter(|x: &f32| x.is_finite()).collect();
+        let numbers: Vec<f32> =
+            words.iter().filter_map(|word| word.parse().ok()).filter(|x: &f32| x.is_finite()).collect();
         match (option, &numbers[..]) {
             ("-s", [u, rest @ ..]) => map.scale = [*u, rest.first().copied().unwrap_or(*u)],
             ("-o", [u, rest @ ..]) => map.offset = [*u, rest.first().copied().unwrap_or(0.0)],
