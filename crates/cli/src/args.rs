@@ -289,6 +289,8 @@ pub(crate) enum StudyName {
     Pixel,
     /// What rays and building cost, against the number of triangles; processor times, in one thread
     SceneSize,
+    /// Hierarchies, trees, grids and others: building, memory, tests and time; processor times, in one thread
+    Accelerators,
     /// Error of the ways to find the light, against the size of the lamp
     LightSize,
 }

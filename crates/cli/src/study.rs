@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use etendue::lab::{
-    ConvergenceSettings, LightSizeSettings, PixelSettings, SceneSizeSettings, convergence, light_size, pixel,
-    scene_size,
+    AcceleratorSettings, ConvergenceSettings, LightSizeSettings, PixelSettings, SceneSizeSettings,
+    accelerators, convergence, light_size, pixel, scene_size,
 };
 
 use crate::args::{StudyArguments, StudyName};
@@ -43,11 +43,15 @@ fn measure(arguments: &StudyArguments) -> Result<(&'static str, String, String, 
         }
         StudyName::SceneSize => {
             let settings = if quick { SceneSizeSettings::quick() } else { SceneSizeSettings::full() };
-            // In one thread, whose processor time is then that of all the work.
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-            let pool = pool.map_err(|error| Failure::Running(format!("cannot start a thread: {error}")))?;
-            let study = pool.install(|| scene_size(&settings, &thread_time, &mut |what| report::note(what)));
+            let study =
+                in_one_thread(|| scene_size(&settings, &thread_time, &mut |what| report::note(what)))?;
             ("scene-size", study.csv(), study.svg(), study.summary())
+        }
+        StudyName::Accelerators => {
+            let settings = if quick { AcceleratorSettings::quick() } else { AcceleratorSettings::full() };
+            let study =
+                in_one_thread(|| accelerators(&settings, &thread_time, &mut |what| report::note(what)))?;
+            ("accelerators", study.csv(), study.svg(), study.summary())
         }
         StudyName::LightSize => {
             let settings = if quick { LightSizeSettings::quick(seed) } else { LightSizeSettings::full(seed) };
@@ -55,6 +59,13 @@ fn measure(arguments: &StudyArguments) -> Result<(&'static str, String, String, 
             ("light-size", study.csv(), study.svg(), study.summary())
         }
     })
+}
+
+/// Runs a study in one thread, whose processor time is then that of all the work.
+fn in_one_thread<T: Send>(run: impl FnOnce() -> T + Send) -> Result<T> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let pool = pool.map_err(|error| Failure::Running(format!("cannot start a thread: {error}")))?;
+    Ok(pool.install(run))
 }
 
 fn write(folder: &Path, name: &str, text: &str) -> Result<()> {

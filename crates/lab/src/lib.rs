@@ -7,6 +7,7 @@ pub mod estimator;
 pub mod reference;
 pub mod scenes;
 
+pub mod accelerators;
 pub mod brdf;
 pub mod convergence;
 pub mod light_size;
@@ -19,6 +20,7 @@ pub mod generate;
 pub mod fit;
 pub mod plot;
 
+pub use accelerators::{AcceleratorSettings, AcceleratorStudy, accelerators};
 pub use brdf::{Exploration, Subject, explore, law_table};
 pub use convergence::{Convergence, ConvergenceSettings, convergence};
 pub use estimator::{Estimator, SamplerChoice};

@@ -26,13 +26,14 @@ pub use wires::Wires;
 const PANEL_SIZE: (u32, u32) = (640, 520);
 
 /// Colours that stay apart for colour-blind eyes (Okabe and Ito 2008).
-const COLORS: [RGBColor; 6] = [
+const COLORS: [RGBColor; 7] = [
     RGBColor(0, 0, 0),
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
     RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
 ];
 /// Blue, green, orange and red of the same set.
 const WAVELENGTH_COLORS: [RGBColor; 6] = [
@@ -298,7 +299,7 @@ impl Panel {
             .y_label_formatter(&once(y_label))
             .draw()
             .expect(IN_MEMORY);
-        let colors = if self.palette == Palette::Apart { COLORS } else { WAVELENGTH_COLORS };
+        let colors = if self.palette == Palette::Apart { &COLORS[..] } else { &WAVELENGTH_COLORS };
         let mut n_colored = 0;
         for series in &self.series {
             n_colored += usize::from(series.mark != Mark::DashesAsBefore);
