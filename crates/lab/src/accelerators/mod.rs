@@ -37,8 +37,8 @@ impl AcceleratorSettings {
     /// The study as the documentation shows it: up to a million triangles.
     #[must_use]
     pub fn full() -> Self {
-        let sizes = vec![1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000];
-        Self { sizes, resolution: [160, 120], n_rounds: 5, max_brute: 10_000 }
+        let sizes = vec![1000, 10_000, 100_000, 1_000_000];
+        Self { sizes, resolution: [128, 96], n_rounds: 3, max_brute: 10_000 }
     }
 
     /// A rough version that takes a tenth of the time.
@@ -89,8 +89,10 @@ pub const KINDS: [RayKind; 3] = [RayKind::Primary, RayKind::Bounce, RayKind::Sha
 const TYPICAL: usize = 1;
 /// The models.
 const MODELS: [&str; 3] = ["terrain", "cloud", "stadium"];
-/// Rays of each kind where nothing speeds them up.
-const BRUTE_RAYS: usize = 300;
+/// Rays of each kind that are always traced.
+const FEW_RAYS: usize = 100;
+/// More are traced as long as they take no more steps, nodes and tests together, than these.
+const MAX_STEPS: f64 = 2e7;
 /// Larger models are built once.
 const LARGE: usize = 50_000;
 
@@ -133,7 +135,7 @@ fn measure(
         });
         let geometry = geometry.unwrap_or_else(|| model.clone().into_builder().build_with(accelerator));
         let set = |kind: &RayKind| sets.iter().find(|set| set.kind == *kind);
-        let cost = |set: &RaySet| ray_cost(set, &geometry, accelerator, settings.n_rounds, clock);
+        let cost = |set: &RaySet| ray_cost(set, &geometry, settings.n_rounds, clock);
         AcceleratorCost {
             model: name,
             n_triangles,
@@ -149,15 +151,13 @@ fn measure(
 fn ray_cost(
     set: &RaySet,
     geometry: &Geometry,
-    accelerator: Accelerator,
     n_rounds: u32,
     clock: &dyn Fn() -> Duration,
 ) -> AcceleratorRayCost {
-    let mut set = set.clone();
-    if accelerator == Accelerator::Brute {
-        let step = set.rays.len().div_ceil(BRUTE_RAYS).max(1);
-        set.rays = set.rays.into_iter().step_by(step).collect();
-    }
+    let few = thinned(set, FEW_RAYS);
+    let TraversalWork { nodes, primitives, .. } = few.work(geometry);
+    let steps = (nodes + primitives) as f64 / few.rays.len() as f64;
+    let set = thinned(set, ((MAX_STEPS / steps.max(1.0)) as usize).max(FEW_RAYS));
     let n = set.rays.len() as f64;
     let TraversalWork { nodes, primitives, .. } = set.work(geometry);
     let time_s = fastest(n_rounds, || {
@@ -166,6 +166,12 @@ fn ray_cost(
         clock() - start
     });
     AcceleratorRayCost { nodes: nodes as f64 / n, primitives: primitives as f64 / n, time_s: time_s / n }
+}
+
+/// Some rays of a set, as evenly as they come.
+fn thinned(set: &RaySet, n_rays: usize) -> RaySet {
+    let step = set.rays.len().div_ceil(n_rays).max(1);
+    RaySet { rays: set.rays.iter().step_by(step).copied().collect(), ..*set }
 }
 
 /// The least of several times, in seconds: the one that other programs have disturbed least.
