@@ -37,6 +37,10 @@ pub struct GeometryCounts {
     pub n_patches: usize,
     /// Spheres, disks, cylinders and other shapes given by a short formula.
     pub n_quadrics: usize,
+    /// Curves stored.
+    pub n_curves: usize,
+    /// Points of point-sampled surfaces stored.
+    pub n_points: usize,
     /// Groups for instancing.
     pub n_objects: usize,
     /// Instances of groups.
@@ -156,10 +160,12 @@ impl Geometry {
         self.entities[geometry.0 as usize].n_primitives()
     }
 
-    /// True if the entity stands still in the world and belongs to no object, so that it may be a light source.
+    /// True if the entity stands still in the world, belongs to no object and is of a shape that can emit
+    /// ([`crate::Shape::can_emit`]), so that it may be a light source.
     #[must_use]
     pub fn can_emit(&self, geometry: GeometryId) -> bool {
         self.entity_groups[geometry.0 as usize] == WORLD
+            && !matches!(self.entities[geometry.0 as usize], Entity::Traced(_))
     }
 
     /// Bytes on the heap.

@@ -32,7 +32,7 @@ impl Geometry {
             Entity::Triangles(triangles) => FlatLamp::of_triangle(triangles, primitive).map(Lamp::Flat),
             Entity::Patches(patches) => FlatLamp::of_patch(patches, primitive).map(Lamp::Flat),
             Entity::Sphere(sphere) => Some(Lamp::Sphere(*sphere.globe())),
-            Entity::Quadric(_) => None,
+            Entity::Quadric(_) | Entity::Traced(_) => None,
         }
     }
 

@@ -11,6 +11,7 @@ mod mesh;
 mod shape;
 
 mod accelerator;
+mod bounding_sphere;
 mod builder;
 mod geometry;
 mod heightfield;
@@ -32,6 +33,7 @@ pub mod points;
 mod test_support;
 
 pub use accelerator::{Accelerator, BinarySplit, DivisionSettings, GridSettings, KdTreeSettings};
+pub use bounding_sphere::{BoundingSphere, ObjectReference};
 pub use builder::GeometryBuilder;
 pub use geometry::{Geometry, GeometryCounts};
 pub use heightfield::{FractalHeights, HeightGrid, MAX_GRID_SIDE, MAX_HEIGHT_LEVELS};
@@ -43,6 +45,8 @@ pub use mesh::{BilinearMesh, MeshError, TriangleMesh};
 pub use refine::{Fractal, MAX_REFINED_TRIANGLES, Refined, TooManyTriangles};
 pub use refit::MovedVertices;
 pub use revolution::{ContourError, MAX_CONTOUR_POINTS, Revolution};
-pub use shape::Shape;
+pub use shape::{
+    Curve, CurveBasis, CurveKind, CurveSet, MovingMesh, PointCloud, Shape, bezier_segments, estimate_normals,
+};
 pub use subdivision::loop_subdivide;
 pub use work::TraversalWork;

@@ -4,23 +4,31 @@
 //! `sample`), and its arm in every `match` that the compiler then reports in `entity.rs` (and, for shapes given by
 //! a formula, in `quadric.rs`).
 
+mod cloud;
 mod conic;
+mod curves;
 mod cylinder;
 mod disk;
 pub(crate) mod entity;
 pub(crate) mod globe;
+mod moving;
 mod patches;
 mod plane;
 mod quadric;
 mod sphere;
 mod torus;
+mod traced;
 mod triangles;
 mod whole_sphere;
 
 #[cfg(test)]
 mod tests;
 
+pub use cloud::{PointCloud, estimate_normals};
+pub use curves::{Curve, CurveBasis, CurveKind, CurveSet, bezier_segments};
+pub use moving::MovingMesh;
 pub(crate) use patches::{Patches, entity_of, resolve};
+pub(crate) use traced::Traced;
 pub(crate) use triangles::Triangles;
 
 use std::f64::consts::TAU;
@@ -38,6 +46,12 @@ pub enum Shape {
     Triangles(TriangleMesh),
     /// A mesh of bilinear patches.
     Bilinear(BilinearMesh),
+    /// A triangle mesh whose vertices move.
+    Moving(MovingMesh),
+    /// Curves with a width.
+    Curves(CurveSet),
+    /// Points of a surface.
+    Points(PointCloud),
     /// The part of a sphere around the origin with z in [`z_min`, `z_max`] and azimuth up to `phi_max_rad`.
     Sphere {
         /// Radius.
@@ -125,11 +139,20 @@ impl Shape {
         Self::Sphere { radius, z_min: -radius, z_max: radius, phi_max_rad: std::f32::consts::TAU }
     }
 
+    /// True if the shape can be a light source: all but what moves by itself, curves and points.
+    #[must_use]
+    pub const fn can_emit(&self) -> bool {
+        !matches!(self, Self::Moving(_) | Self::Curves(_) | Self::Points(_))
+    }
+
     /// Checks the arrays of meshes; shapes given by a formula are always valid.
     pub fn validate(&self) -> Result<(), MeshError> {
         match self {
             Self::Triangles(mesh) => mesh.validate(),
             Self::Bilinear(mesh) => mesh.validate(),
+            Self::Moving(mesh) => mesh.validate(),
+            Self::Curves(set) => set.validate(),
+            Self::Points(cloud) => cloud.validate(),
             _ => Ok(()),
         }
     }

@@ -8,7 +8,7 @@ use etendue_image::Texels;
 use etendue_scene::assets::Contours;
 use etendue_scene::bsdf::measured::MeasuredBrdf;
 use etendue_scene::bsdf::tabulated::BrdfGrid;
-use etendue_scene::build::MESH_FILES;
+use etendue_scene::build::{MESH_FILE_PARAMETERS, MESH_FILES};
 use etendue_scene::camera::LensPrescription;
 use etendue_scene::document::{EmbeddedFile, Entity, ShapeEntity, Value};
 use etendue_scene::light::Photometry;
@@ -23,7 +23,7 @@ use crate::ies::read_ies;
 use crate::images::{read_texels, read_texels_from};
 use crate::lens::read_lens;
 use crate::measured::read_measured;
-use crate::ply::read_ply;
+use crate::ply::{read_ply, read_ply_points};
 use crate::spd::read_spd;
 
 #[cfg(test)]
@@ -33,6 +33,7 @@ mod tests;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Mesh,
+    Points,
     Image,
     Spectrum,
     Brdf,
@@ -130,7 +131,9 @@ fn load_file(kind: Kind, path: &Path) -> Result<Loaded, String> {
 
 fn load_embedded(kind: Kind, name: &str, file: &EmbeddedFile) -> Result<Loaded, String> {
     match (kind, file) {
-        (Kind::Mesh, EmbeddedFile::Mesh(mesh)) => Ok(Loaded::Mesh(Arc::clone(mesh), Vec::new())),
+        (Kind::Mesh | Kind::Points, EmbeddedFile::Mesh(mesh)) => {
+            Ok(Loaded::Mesh(Arc::clone(mesh), Vec::new()))
+        }
         (Kind::Image, EmbeddedFile::Image(texels)) => Ok(Loaded::Image(Arc::clone(texels))),
         (Kind::Image, EmbeddedFile::Bytes(bytes)) => {
             let texels = read_texels_from(name, Arc::clone(bytes)).map_err(|error| error.to_string())?;
@@ -149,6 +152,10 @@ fn decode(kind: Kind, bytes: &[u8]) -> Result<Loaded, String> {
             let ply = read_ply(bytes).map_err(|error| error.to_string())?;
             Ok(Loaded::Mesh(Arc::new(ply.mesh), ply.warnings))
         }
+        Kind::Points => {
+            let ply = read_ply_points(bytes).map_err(|error| error.to_string())?;
+            Ok(Loaded::Mesh(Arc::new(ply.mesh), ply.warnings))
+        }
         Kind::Brdf => read_brdf_table(bytes).map(Loaded::Brdf).map_err(|error| error.to_string()),
         Kind::Contours => read_contours(bytes).map(Loaded::Contours).map_err(|error| error.to_string()),
         Kind::Measured => read_measured(bytes).map(Loaded::Measured).map_err(|error| error.to_string()),
@@ -165,7 +172,12 @@ fn wanted_files(document: &Document) -> Wanted {
     let objects = document.objects.iter().flat_map(|object| &object.shapes);
     for ShapeEntity { entity, .. } in document.shapes.iter().chain(objects) {
         match entity.type_name.as_str() {
-            name if MESH_FILES.contains(&name) => add(&mut wanted, Kind::Mesh, entity, "filename"),
+            name if MESH_FILES.contains(&name) => {
+                for parameter in MESH_FILE_PARAMETERS {
+                    add(&mut wanted, Kind::Mesh, entity, parameter);
+                }
+            }
+            "points" => add(&mut wanted, Kind::Points, entity, "filename"),
             "revolution" => add(&mut wanted, Kind::Contours, entity, "filename"),
             "heightfield" => add(&mut wanted, Kind::Image, entity, "filename"),
             _ => {}

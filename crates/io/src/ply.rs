@@ -81,6 +81,18 @@ impl std::error::Error for PlyError {}
 /// # Errors
 /// If the bytes are no PLY file, or a damaged one.
 pub fn read_ply(bytes: &[u8]) -> Result<PlyMesh, PlyError> {
+    let ply = read_ply_points(bytes)?;
+    if ply.mesh.triangles.is_empty() && ply.mesh.quads.is_empty() {
+        return Err(PlyError::Missing("faces"));
+    }
+    Ok(ply)
+}
+
+/// Reads vertices, and faces if there are any.
+///
+/// # Errors
+/// If the bytes are no PLY file, or a damaged one.
+pub fn read_ply_points(bytes: &[u8]) -> Result<PlyMesh, PlyError> {
     let bytes = decompressed(bytes).map_err(PlyError::Gzip)?;
     let header = Header::parse(&bytes)?;
     let mut body = Body::new(&bytes[header.data_start..], header.encoding);
@@ -105,7 +117,6 @@ struct Reader {
     n_cut: usize,
     n_degenerate: usize,
     has_vertices: bool,
-    has_faces: bool,
 }
 
 /// Names of texture coordinates in use.
@@ -151,7 +162,6 @@ impl Reader {
     }
 
     fn faces(&mut self, body: &mut Body<'_>, element: &Element) -> Result<(), PlyError> {
-        self.has_faces = true;
         let list = element.properties.iter().position(|property| {
             matches!(property.kind, PropertyKind::List { .. })
                 && matches!(property.name.as_str(), "vertex_indices" | "vertex_index")
@@ -210,9 +220,6 @@ impl Reader {
         let mesh = &mut self.ply.mesh;
         if !self.has_vertices {
             return Err(PlyError::Missing("element `vertex`"));
-        }
-        if !self.has_faces || (mesh.triangles.is_empty() && mesh.quads.is_empty()) {
-            return Err(PlyError::Missing("faces"));
         }
         check_indices(mesh)?;
         mesh.face_indices.append(&mut self.quad_face_indices);

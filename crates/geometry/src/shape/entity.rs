@@ -5,16 +5,19 @@ use rayon::prelude::*;
 
 use etendue_math::{Bounds3, Normal3, Point2, Point3, Ray, Transform, Vector3};
 
+use super::cloud::Cloud;
 use super::conic::Conic;
+use super::curves::Curves;
 use super::cylinder::Cylinder;
 use super::disk::Disk;
+use super::moving::MovingTriangles;
 use super::patches::{self, Patches};
 use super::quadric::{self, Quadric, QuadricShape};
 use super::sphere::Sphere;
 use super::torus::Torus;
 use super::triangles::Triangles;
 use super::whole_sphere::WholeSphere;
-use super::{Candidates, LocalSurface, Shape};
+use super::{Candidates, LocalSurface, Shape, Traced};
 use crate::bvh::{BuildPrimitive, PrimitiveRef, append_pairs, intersect_triangle};
 use crate::double;
 use crate::geometry::GeometryCounts;
@@ -32,6 +35,8 @@ pub(crate) enum Entity {
     Sphere(WholeSphere),
     /// A stretched or cut sphere, or another shape given by a short formula.
     Quadric(Box<Quadric>),
+    /// A shape that is no lamp.
+    Traced(Box<Traced>),
 }
 
 impl Entity {
@@ -45,6 +50,18 @@ impl Entity {
                 Self::Triangles(Triangles::new(mesh, group_from_shape, reverse_orientation))
             }
             Shape::Bilinear(mesh) => Self::Patches(Patches::new(mesh, group_from_shape, reverse_orientation)),
+            Shape::Moving(mesh) => {
+                let moving = MovingTriangles::new(mesh, group_from_shape, reverse_orientation);
+                Self::Traced(Box::new(Traced::Moving(moving)))
+            }
+            Shape::Curves(set) => {
+                let curves = Curves::new(set, group_from_shape, reverse_orientation);
+                Self::Traced(Box::new(Traced::Curves(curves)))
+            }
+            Shape::Points(points) => {
+                let cloud = Cloud::new(points, group_from_shape, reverse_orientation);
+                Self::Traced(Box::new(Traced::Cloud(cloud)))
+            }
             Shape::Sphere { radius, z_min, z_max, phi_max_rad } => {
                 let sphere = Sphere::new(radius.into(), z_min.into(), z_max.into(), phi_max_rad.into());
                 match quadric::similarity(&map) {
@@ -106,6 +123,12 @@ impl Entity {
                     .filter(|&patch| patches.is_valid(patch))
                     .map(|patch| BuildPrimitive::item(reference(patch), patches.bounds(patch))),
             ),
+            Self::Traced(shape) => {
+                let boxes = (0..shape.n_primitives()).map(|primitive| (primitive, shape.bounds(primitive)));
+                let is_there = |b: &Bounds3| !b.is_empty() && b.min.is_finite() && b.max.is_finite();
+                let items = boxes.filter(|(_, bounds)| is_there(bounds));
+                primitives.extend(items.map(|(i, bounds)| BuildPrimitive::item(reference(i), bounds)));
+            }
             Self::Sphere(_) | Self::Quadric(_) => {
                 let bounds = self.bounds(0);
                 if bounds.min.is_finite() && bounds.max.is_finite() && self.area(0) > 0.0 {
@@ -121,7 +144,7 @@ impl Entity {
         match self {
             Self::Triangles(triangles) => triangles.positions(triangle).map(|p| [p.x, p.y, p.z]),
             Self::Patches(patches) => patches.half_corners(triangle).map(|p| [p.x, p.y, p.z]),
-            Self::Sphere(_) | Self::Quadric(_) => [[f32::NAN; 3]; 3],
+            Self::Sphere(_) | Self::Quadric(_) | Self::Traced(_) => [[f32::NAN; 3]; 3],
         }
     }
 
@@ -133,7 +156,7 @@ impl Entity {
             Self::Patches(patches) => {
                 (patches.is_flat() && patches.is_valid(triangle / 2)).then(|| self.triangle(triangle))
             }
-            Self::Sphere(_) | Self::Quadric(_) => None,
+            Self::Sphere(_) | Self::Quadric(_) | Self::Traced(_) => None,
         }
     }
 
@@ -142,7 +165,7 @@ impl Entity {
         let n = match self {
             Self::Triangles(_) => self.n_primitives(),
             Self::Patches(_) => 2 * self.n_primitives(),
-            Self::Sphere(_) | Self::Quadric(_) => 0,
+            Self::Sphere(_) | Self::Quadric(_) | Self::Traced(_) => 0,
         };
         (0..n).into_par_iter().filter(|&t| self.valid_triangle(t).is_some()).count()
     }
@@ -151,7 +174,7 @@ impl Entity {
     pub(crate) fn check_vertices(&self, positions: &[Point3], normals: &[Normal3]) -> Result<(), MeshError> {
         let expected = match self {
             Self::Triangles(triangles) => triangles.mesh().positions.len(),
-            Self::Patches(_) | Self::Sphere(_) | Self::Quadric(_) => 0,
+            Self::Patches(_) | Self::Sphere(_) | Self::Quadric(_) | Self::Traced(_) => 0,
         };
         if positions.len() != expected {
             return Err(MeshError::WrongLength { array: "positions", found: positions.len(), expected });
@@ -173,6 +196,7 @@ impl Entity {
             Self::Triangles(triangles) => triangles.mesh().indices.len() as u32,
             Self::Patches(patches) => patches.mesh().indices.len() as u32,
             Self::Sphere(_) | Self::Quadric(_) => 1,
+            Self::Traced(shape) => shape.n_primitives(),
         }
     }
 
@@ -188,6 +212,7 @@ impl Entity {
             Self::Patches(patches) => patches.intersect(primitive, ray),
             Self::Sphere(sphere) => sphere.intersect(ray),
             Self::Quadric(quadric) => quadric.intersect(ray),
+            Self::Traced(shape) => shape.intersect(primitive, ray),
         }
     }
 
@@ -206,6 +231,7 @@ impl Entity {
             Self::Triangles(triangles) => triangles.point(primitive, uv),
             Self::Patches(patches) => patches.point(primitive, uv),
             Self::Sphere(sphere) => sphere.point(ray, t),
+            Self::Traced(shape) => shape.point(primitive, ray, t, uv),
             Self::Quadric(quadric) => {
                 let surface = quadric.surface(ray, t, uv);
                 (surface.p, surface.point)
@@ -220,6 +246,7 @@ impl Entity {
             Self::Patches(patches) => patches.surface(primitive, uv),
             Self::Sphere(sphere) => sphere.surface(ray, t),
             Self::Quadric(quadric) => quadric.surface(ray, t, uv),
+            Self::Traced(shape) => shape.surface(primitive, ray, t, uv),
         }
     }
 
@@ -231,6 +258,7 @@ impl Entity {
             // The hit of a ray does not tell; `point` does.
             Self::Sphere(_) => Point2::default(),
             Self::Quadric(_) => Point2::new(uv[0], uv[1]),
+            Self::Traced(shape) => shape.uv(primitive, uv),
         }
     }
 
@@ -241,7 +269,16 @@ impl Entity {
             Self::Patches(patches) => patches.bounds(primitive),
             Self::Sphere(sphere) => sphere.bounds(),
             Self::Quadric(quadric) => quadric.bounds(),
+            Self::Traced(shape) => shape.bounds(primitive),
         }
+    }
+
+    /// Box around all primitives.
+    pub(crate) fn whole_bounds(&self) -> Bounds3 {
+        (0..self.n_primitives())
+            .map(|primitive| self.bounds(primitive))
+            .filter(|bounds| bounds.min.is_finite() && bounds.max.is_finite())
+            .fold(Bounds3::EMPTY, Bounds3::union)
     }
 
     /// Area in square metres.
@@ -251,6 +288,7 @@ impl Entity {
             Self::Patches(patches) => patches.area(primitive),
             Self::Sphere(sphere) => sphere.globe().area(),
             Self::Quadric(quadric) => quadric.area(),
+            Self::Traced(_) => 0.0,
         }
     }
 
@@ -261,6 +299,7 @@ impl Entity {
             Self::Patches(patches) => patches.emission_cone(primitive),
             Self::Sphere(_) => WholeSphere::emission_cone(),
             Self::Quadric(quadric) => quadric.emission_cone(),
+            Self::Traced(_) => WholeSphere::emission_cone(),
         };
         (axis.as_vector(), cosine)
     }
@@ -272,6 +311,7 @@ impl Entity {
             Self::Patches(patches) => patches.sample_area(primitive, u),
             Self::Sphere(sphere) => Some(sphere.sample_area(u)),
             Self::Quadric(quadric) => quadric.sample_area(u),
+            Self::Traced(_) => None,
         }
     }
 
@@ -287,7 +327,7 @@ impl Entity {
             Self::Triangles(triangles) => triangles.sample_solid_angle(primitive, reference.p, u),
             Self::Patches(patches) => patches.sample_solid_angle(primitive, reference.p, u),
             Self::Sphere(sphere) => sphere.sample_cone(reference, u),
-            Self::Quadric(_) => None,
+            Self::Quadric(_) | Self::Traced(_) => None,
         }
     }
 
@@ -298,7 +338,7 @@ impl Entity {
             Self::Triangles(triangles) => triangles.solid_angle_pdf(primitive, reference.p),
             Self::Patches(patches) => patches.solid_angle_pdf(primitive, reference.p),
             Self::Sphere(sphere) => sphere.globe().cone_pdf(reference.p),
-            Self::Quadric(_) => None,
+            Self::Quadric(_) | Self::Traced(_) => None,
         }
     }
 
@@ -310,6 +350,7 @@ impl Entity {
             }
             Self::Patches(patches) => (patches.pdf_a(primitive, uv), patches.normal(primitive, uv)),
             Self::Sphere(sphere) => (1.0 / sphere.globe().area(), sphere.point(ray, t).1.ng),
+            Self::Traced(shape) => (0.0, shape.point(primitive, ray, t, uv.map(|x| x as f32)).1.ng),
             Self::Quadric(quadric) => {
                 let n = quadric.surface(ray, t, [0.0; 2]).point.ng;
                 (quadric.pdf_a(n), n)
@@ -326,6 +367,7 @@ impl Entity {
             }
             Self::Sphere(sphere) => 1.0 / sphere.globe().area(),
             Self::Quadric(quadric) => quadric.pdf_a(n),
+            Self::Traced(_) => 0.0,
         }
     }
 
@@ -336,6 +378,7 @@ impl Entity {
             Self::Patches(patches) => patches.memory_bytes(),
             Self::Sphere(_) => 0,
             Self::Quadric(_) => size_of::<Quadric>(),
+            Self::Traced(shape) => shape.memory_bytes(),
         }
     }
 
@@ -346,6 +389,7 @@ impl Entity {
             Self::Triangles(triangles) => counts.n_triangles += triangles.mesh().indices.len(),
             Self::Patches(patches) => counts.n_patches += patches.mesh().indices.len(),
             Self::Sphere(_) | Self::Quadric(_) => counts.n_quadrics += 1,
+            Self::Traced(shape) => shape.count(counts),
         }
     }
 }

@@ -61,6 +61,25 @@ impl Triangles {
         }
     }
 
+    /// One triangle with other corners, and other normals if there are any; all else stays.
+    pub(crate) fn alone(&self, triangle: u32, corners: [Point3; 3], normals: Option<[Normal3; 3]>) -> Self {
+        let mesh = TriangleMesh {
+            positions: corners.to_vec(),
+            indices: vec![[0, 1, 2]],
+            normals: normals.or_else(|| self.normals(triangle)).map(Vec::from).unwrap_or_default(),
+            tangents: self.of_corners(triangle, &self.mesh.tangents),
+            uvs: self.of_corners(triangle, &self.mesh.uvs),
+            face_indices: self.mesh.face_indices.get(triangle as usize).copied().into_iter().collect(),
+        };
+        Self { mesh, flips: self.flips, size: largest_coordinate(&corners) }
+    }
+
+    /// The values of an array per vertex at the corners of a triangle; none where the array is empty.
+    fn of_corners<T: Copy>(&self, triangle: u32, values: &[T]) -> Vec<T> {
+        let corners = self.mesh.indices[triangle as usize];
+        corners.iter().filter_map(|v| values.get(*v as usize)).copied().collect()
+    }
+
     pub(crate) const fn mesh(&self) -> &TriangleMesh {
         &self.mesh
     }

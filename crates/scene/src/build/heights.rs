@@ -187,7 +187,7 @@ pub(super) fn read_fractal(
 }
 
 /// One mesh of triangles from all parts of a file, which share no vertices then.
-fn triangulated(shapes: Vec<Shape>) -> Option<TriangleMesh> {
+pub(super) fn triangulated(shapes: Vec<Shape>) -> Option<TriangleMesh> {
     shapes.into_iter().filter_map(triangles_of).reduce(|mut all, mesh| {
         let first = all.positions.len() as u32;
         all.indices.extend(mesh.indices.iter().map(|face| face.map(|v| v + first)));

@@ -17,6 +17,8 @@ const MAX_SUBDIVISION_LEVELS: i32 = 10;
 
 /// Shapes whose `filename` is that of a mesh.
 pub const MESH_FILES: &[&str] = &["plymesh", "fractal"];
+/// Parameters with names of such files.
+pub const MESH_FILE_PARAMETERS: &[&str] = &["filename", "filename1"];
 
 /// Meshes from files, moved out at their last use and copied before.
 #[derive(Debug, Default)]
@@ -33,17 +35,18 @@ impl MeshStore {
     ) -> Self {
         let mut meshes: HashMap<String, (Arc<LoadedMesh>, usize)> = HashMap::new();
         for shape in shapes {
-            let Some(name) = mesh_file(shape) else { continue };
-            if let Some(entry) = meshes.get_mut(name) {
-                entry.1 += 1;
-            } else if let Some(mesh) = loaded.remove(name) {
-                meshes.insert(name.to_owned(), (mesh, 1));
+            for name in mesh_files(shape) {
+                if let Some(entry) = meshes.get_mut(name) {
+                    entry.1 += 1;
+                } else if let Some(mesh) = loaded.remove(name) {
+                    meshes.insert(name.to_owned(), (mesh, 1));
+                }
             }
         }
         Self { meshes, attributes: Vec::new() }
     }
 
-    fn take(&mut self, name: &str) -> Option<LoadedMesh> {
+    pub(super) fn take(&mut self, name: &str) -> Option<LoadedMesh> {
         let entry = self.meshes.get_mut(name)?;
         entry.1 -= 1;
         if entry.1 > 0 {
@@ -53,14 +56,17 @@ impl MeshStore {
     }
 }
 
-fn mesh_file(shape: &ShapeEntity) -> Option<&str> {
-    let parameter = shape.entity.parameters.iter().find(|p| p.name == "filename")?;
-    match &parameter.value {
-        Value::Strings(names) if MESH_FILES.contains(&shape.entity.type_name.as_str()) => {
-            names.first().map(String::as_str)
+fn mesh_files(shape: &ShapeEntity) -> impl Iterator<Item = &str> {
+    let type_name = shape.entity.type_name.as_str();
+    let is_mesh = MESH_FILES.contains(&type_name) || type_name == "points";
+    let names = move |name: &'static str| {
+        let parameter = shape.entity.parameters.iter().find(|p| p.name == name)?;
+        match &parameter.value {
+            Value::Strings(names) if is_mesh => names.first().map(String::as_str),
+            _ => None,
         }
-        _ => None,
-    }
+    };
+    MESH_FILE_PARAMETERS.iter().filter_map(move |name| names(name))
 }
 
 /// Integers of a parameter as groups of N vertex numbers; a remainder or a negative number is reported.
@@ -83,7 +89,7 @@ fn read_indices<const N: usize>(p: &mut Parameters<'_, '_>, default: [u32; N]) -
 }
 
 /// An optional vertex attribute; a count that differs from that of the vertices is reported and drops it.
-fn per_vertex<T: Clone>(
+pub(super) fn per_vertex<T: Clone>(
     p: &mut Parameters<'_, '_>,
     name: &'static str,
     values: Option<&[T]>,
@@ -225,7 +231,7 @@ fn attributes_of_parts(
 }
 
 /// Triangles and quadrilaterals of a file as separate shapes.
-fn split_loaded_mesh(p: &mut Parameters<'_, '_>, mesh: LoadedMesh) -> Vec<Shape> {
+pub(super) fn split_loaded_mesh(p: &mut Parameters<'_, '_>, mesh: LoadedMesh) -> Vec<Shape> {
     let LoadedMesh { triangles, quads, positions, normals, tangents, uvs, mut face_indices, attributes: _ } =
         mesh;
     let quad_faces = if face_indices.len() > triangles.len() {

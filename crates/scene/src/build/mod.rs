@@ -5,12 +5,15 @@
 
 mod accelerator;
 mod camera;
+mod curves;
 mod film;
 mod formulas;
 mod heights;
 mod lights;
 mod materials;
 mod meshes;
+mod motion;
+mod point_cloud;
 mod revolution;
 mod shapes;
 #[cfg(test)]
@@ -30,7 +33,7 @@ use crate::texture::Textures;
 
 pub use accelerator::ACCELERATORS;
 pub use film::{FILMS, SAMPLERS};
-pub use meshes::MESH_FILES;
+pub use meshes::{MESH_FILE_PARAMETERS, MESH_FILES};
 pub use shapes::SHAPES;
 
 use meshes::MeshStore;
@@ -124,16 +127,12 @@ impl Builder<'_, '_> {
     fn build_geometry(&mut self, meshes: &mut MeshStore) -> etendue_geometry::Geometry {
         let document = self.document;
         let mut geometry = GeometryBuilder::new();
-        for shape in &document.shapes {
-            self.add_shape(shape, Target::World, &mut geometry, meshes);
-        }
+        self.add_shapes(&document.shapes, Target::World, &mut geometry, meshes);
         let mut objects: HashMap<&str, ObjectId> = HashMap::new();
         for object in &document.objects {
             let id = geometry.begin_object();
             objects.insert(&object.name, id);
-            for shape in &object.shapes {
-                self.add_shape(shape, Target::Object(id), &mut geometry, meshes);
-            }
+            self.add_shapes(&object.shapes, Target::Object(id), &mut geometry, meshes);
         }
         for instance in &document.instances {
             if let Some(object) = self.find_object(&objects, instance) {

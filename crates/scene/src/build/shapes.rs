@@ -1,6 +1,6 @@
 //! Shapes: from entities to geometry, with the attributes that geometry does not know.
 
-use etendue_geometry::{GeometryBuilder, GeometryId, ObjectId, Shape};
+use etendue_geometry::{CurveSet, GeometryBuilder, GeometryId, ObjectId, Shape};
 
 use crate::document::{Document, MaterialReference, ShapeEntity, Value};
 use crate::material::MaterialId;
@@ -8,6 +8,7 @@ use crate::parameters::{ParameterSpec, Parameters, spec};
 use crate::scene::ShapeAttributes;
 use crate::texture::{FloatTexture, MeshAttributes};
 
+use super::curves::{CURVE, belong_together, read_curves};
 use super::formulas;
 use super::heights::{
     DISPLACEMENT, EDGE_LENGTH, FRACTAL, HEIGHT_FIELD, read_displacement, read_fractal, read_height_field,
@@ -16,6 +17,8 @@ use super::materials::DEFAULT_MATERIAL;
 use super::meshes::{
     MeshStore, read_bilinear_mesh, read_loop_subdivision, read_ply_mesh, read_triangle_mesh,
 };
+use super::motion::{FILENAME_1, N1, P1, moved};
+use super::point_cloud::{POINTS, read_points};
 use super::revolution::{REVOLUTION, read_revolution};
 use super::{Builder, known_names};
 
@@ -36,10 +39,9 @@ pub const SHAPES: &[(&str, &[ParameterSpec])] = &[
     ("revolution", REVOLUTION),
     ("heightfield", HEIGHT_FIELD),
     ("fractal", FRACTAL),
+    ("curve", CURVE),
+    ("points", POINTS),
 ];
-
-/// Shapes of pbrt-v4 that are left out with a warning.
-const MISSING_SHAPES: &[&str] = &["curve"];
 
 pub(super) const ALPHA: ParameterSpec = spec(
     "alpha",
@@ -77,12 +79,15 @@ const TRIANGLE_MESH: &[ParameterSpec] = &[
     spec("S", "vector", "", "", "vertex tangents"),
     spec("uv", "point2", "", "", "vertex texture coordinates"),
     spec("faceIndices", "integer", "", "", "a number for each face"),
+    P1,
+    N1,
     DISPLACEMENT,
     EDGE_LENGTH,
     ALPHA,
 ];
 const PLY_MESH: &[ParameterSpec] = &[
     spec("filename", "string", "", "", "PLY file, plain or gzipped; quadrilaterals become bilinear patches"),
+    FILENAME_1,
     DISPLACEMENT,
     EDGE_LENGTH,
     ALPHA,
@@ -120,45 +125,88 @@ pub(super) struct Emitter {
 }
 
 impl Builder<'_, '_> {
-    /// Adds the shapes of an entity to the geometry, with their attributes.
-    pub(super) fn add_shape(
+    /// Adds the shapes of entities to the geometry, with their attributes.
+    pub(super) fn add_shapes(
         &mut self,
-        entity: &ShapeEntity,
+        entities: &[ShapeEntity],
         target: Target,
         geometry: &mut GeometryBuilder,
         meshes: &mut MeshStore,
     ) {
+        // Files with hair have a shape for each strand.
+        for run in entities.chunk_by(belong_together) {
+            let mut joined: Option<(Option<FloatTexture>, CurveSet)> = None;
+            for entity in run {
+                let (alpha, shapes) = self.read_shape(entity, meshes);
+                for shape in shapes {
+                    match (&mut joined, shape) {
+                        (Some((first, all)), Shape::Curves(set)) if all.accepts(&set) && *first == alpha => {
+                            all.curves.extend(set.curves);
+                        }
+                        (_, Shape::Curves(set)) if run.len() > 1 => {
+                            if let Some((alpha, all)) = joined.replace((alpha, set)) {
+                                self.place(entity, alpha, Shape::Curves(all), target, geometry, meshes);
+                            }
+                        }
+                        (_, shape) => self.place(entity, alpha, shape, target, geometry, meshes),
+                    }
+                }
+            }
+            if let Some((alpha, all)) = joined {
+                self.place(&run[0], alpha, Shape::Curves(all), target, geometry, meshes);
+            }
+        }
+    }
+
+    /// What an entity says; the attributes of its vertices are left in the store.
+    fn read_shape(
+        &mut self,
+        entity: &ShapeEntity,
+        meshes: &mut MeshStore,
+    ) -> (Option<FloatTexture>, Vec<Shape>) {
         let mut p = Parameters::new(&entity.entity, &mut self.context);
         let alpha = p.float_texture_opt("alpha").filter(|alpha| *alpha != FloatTexture::Constant(1.0));
+        meshes.attributes.clear();
         let mut shapes = read_shapes(&mut p, meshes, &self.textures.mesh_attributes);
-        if matches!(entity.entity.type_name.as_str(), "trianglemesh" | "plymesh")
-            && let Some(displacement) = read_displacement(&mut p, edge_scale(self.document))
-        {
-            meshes.attributes.clear();
-            shapes = displacement.apply(&mut p, shapes, &self.textures, &entity.world_from_object.start);
+        if matches!(entity.entity.type_name.as_str(), "trianglemesh" | "plymesh") {
+            let place = &entity.world_from_object;
+            shapes = moved(&mut p, shapes, meshes, [place.start_time, place.end_time]);
+            if let Some(displacement) = read_displacement(&mut p, edge_scale(self.document)) {
+                meshes.attributes.clear();
+                shapes = displacement.apply(&mut p, shapes, &self.textures, &place.start);
+            }
         }
         p.finish();
-        let mut attributes = std::mem::take(&mut meshes.attributes).into_iter();
-        if shapes.is_empty() {
-            return;
-        }
+        (alpha, shapes)
+    }
+
+    /// Adds a shape of an entity to the geometry.
+    fn place(
+        &mut self,
+        entity: &ShapeEntity,
+        alpha: Option<FloatTexture>,
+        shape: Shape,
+        target: Target,
+        geometry: &mut GeometryBuilder,
+        meshes: &mut MeshStore,
+    ) {
         let material = self.material(&entity.material);
-        let emits = self.check_emission(entity, target, material);
+        let emits = self.check_emission(entity, target, material, shape.can_emit());
         self.check_motion(entity, target);
-        for shape in shapes {
-            let id = match target {
-                Target::World => geometry.add(shape, &entity.world_from_object, entity.reverse_orientation),
-                Target::Object(object) => {
-                    let transform = entity.world_from_object.start;
-                    geometry.add_to_object(object, shape, &transform, entity.reverse_orientation)
-                }
-            };
-            debug_assert_eq!(id.0 as usize, self.attributes.len());
-            self.textures.mesh_attributes.attach(id.0, attributes.next().unwrap_or_default());
-            self.attributes.push(ShapeAttributes { material, alpha, lights: None });
-            if let Some(area_light) = emits {
-                self.emitters.push(Emitter { geometry: id, area_light });
+        let id = match target {
+            Target::World => geometry.add(shape, &entity.world_from_object, entity.reverse_orientation),
+            Target::Object(object) => {
+                let transform = entity.world_from_object.start;
+                geometry.add_to_object(object, shape, &transform, entity.reverse_orientation)
             }
+        };
+        debug_assert_eq!(id.0 as usize, self.attributes.len());
+        if !meshes.attributes.is_empty() {
+            self.textures.mesh_attributes.attach(id.0, meshes.attributes.remove(0));
+        }
+        self.attributes.push(ShapeAttributes { material, alpha, lights: None });
+        if let Some(area_light) = emits {
+            self.emitters.push(Emitter { geometry: id, area_light });
         }
     }
 
@@ -182,12 +230,15 @@ impl Builder<'_, '_> {
         entity: &ShapeEntity,
         target: Target,
         material: MaterialId,
+        can_emit: bool,
     ) -> Option<usize> {
         let area_light = entity.area_light?;
         let (problem, help) = if matches!(target, Target::Object(_)) {
             ("shapes of an object cannot be lights", "place the shape outside of ObjectBegin and ObjectEnd")
         } else if entity.world_from_object.is_animated() {
             ("a moving shape cannot be a light", "make it stand still")
+        } else if !can_emit {
+            ("meshes that deform, curves and points cannot be lights", "give the light to another shape")
         } else if self.materials.is_interface(material) {
             (
                 "the boundary of a medium cannot be a light",
@@ -239,13 +290,8 @@ fn read_shapes(
         "revolution" => read_revolution(p).into_iter().collect(),
         "heightfield" => read_height_field(p).into_iter().collect(),
         "fractal" => read_fractal(p, meshes, attributes),
-        missing if MISSING_SHAPES.contains(&missing) => {
-            let message = format!("the shape \"{missing}\" is not available yet; it is left out");
-            let span = p.span();
-            p.diagnostics().warning(span, message);
-            p.accept_all();
-            Vec::new()
-        }
+        "curve" => read_curves(p).map(Shape::Curves).into_iter().collect(),
+        "points" => read_points(p, meshes).into_iter().collect(),
         unknown => {
             let span = p.span();
             p.diagnostics().unknown_name(span, "shape", unknown, known_names(SHAPES));

@@ -1,9 +1,12 @@
 //! Documents made in code become scenes, and what is wrong with them is reported where it stands.
 
+mod curves;
 mod heights;
 mod lights;
 mod materials;
 mod meshes;
+mod motion;
+mod point_cloud;
 mod revolution;
 mod settings;
 mod shapes;

@@ -137,7 +137,7 @@ fn spectral_films_warn_of_bands() {
 fn accelerators_are_chosen() {
     let with = |entity: Entity| Document { accelerator: Some(here(entity)), ..lit() };
     for (name, ..) in ACCELERATORS {
-        assert_eq!(scene(&with(Entity::new(name))).geometry.accelerator().name(), *name);
+        assert_eq!(scene(&with(Entity::new(*name))).geometry.accelerator().name(), *name);
     }
     let check = |entity: Entity, expected: Accelerator, warning: &str| {
         assert_eq!(warning_here(&with(entity), warning).geometry.accelerator(), expected);
