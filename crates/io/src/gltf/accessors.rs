@@ -2,6 +2,8 @@
 //!
 //! Elements are read one by one, so that an accessor costs no memory of its own, however often meshes share it.
 
+use std::borrow::Cow;
+
 use super::buffers::{Buffers, View};
 use super::file::File;
 use crate::json::Json;
@@ -48,15 +50,18 @@ impl Component {
 
     /// The number at the start of the bytes, which are enough.
     fn number(self, bytes: &[u8], is_normalized: bool) -> f32 {
-        let scaled =
-            |value: f32, largest: f32| if is_normalized { (value / largest).max(-1.0) } else { value };
-        match self {
-            Self::I8 => scaled(f32::from(bytes[0] as i8), 127.0),
-            Self::U8 => scaled(f32::from(bytes[0]), 255.0),
-            Self::I16 => scaled(f32::from(i16::from_le_bytes([bytes[0], bytes[1]])), 32767.0),
-            Self::U16 => scaled(f32::from(u16::from_le_bytes([bytes[0], bytes[1]])), 65535.0),
+        let value = match self {
+            Self::I8 => f32::from(bytes[0] as i8),
+            Self::U8 => f32::from(bytes[0]),
+            Self::I16 => f32::from(i16::from_le_bytes([bytes[0], bytes[1]])),
+            Self::U16 => f32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
             Self::U32 => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]) as f32,
             Self::F32 => f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+        };
+        match self.largest() {
+            1.0 => value,
+            largest if is_normalized => (value / largest).max(-1.0),
+            _ => value,
         }
     }
 
@@ -65,9 +70,28 @@ impl Component {
         match self {
             Self::I8 | Self::U8 => u32::from(bytes[0]),
             Self::I16 | Self::U16 => u32::from(u16::from_le_bytes([bytes[0], bytes[1]])),
-            Self::U32 | Self::F32 => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+            Self::U32 => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]),
+            Self::F32 => f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]) as u32,
         }
     }
+
+    /// What stands for 1 in normalised integers.
+    const fn largest(self) -> f32 {
+        match self {
+            Self::I8 => 127.0,
+            Self::U8 => 255.0,
+            Self::I16 => 32767.0,
+            Self::U16 => 65535.0,
+            Self::U32 | Self::F32 => 1.0,
+        }
+    }
+}
+
+/// What stands for 1 in the numbers of an accessor: 1 unless they are normalised integers.
+pub(super) fn unit(file: &File<'_>, accessor: &Json) -> f32 {
+    let component = file.size_opt(accessor, "componentType").and_then(Component::of_code);
+    let is_normalized = file.bool(accessor, "normalized");
+    component.filter(|_| is_normalized).map_or(1.0, Component::largest)
 }
 
 /// Elements that differ from the others.
@@ -89,7 +113,7 @@ pub(super) struct Accessor<'b> {
     component: Component,
     is_normalized: bool,
     /// From the first element on; `None` if all are zero.
-    bytes: Option<&'b [u8]>,
+    bytes: Option<Cow<'b, [u8]>>,
     stride: usize,
     sparse: Option<Sparse<'b>>,
 }
@@ -124,8 +148,8 @@ impl<'b> Accessor<'b> {
             let view = buffers.view(file, json, "bufferView")?;
             accessor.stride = view.stride.unwrap_or(element);
             let offset = file.size(json, "byteOffset", 0);
-            accessor.bytes =
-                Some(elements(file, json, view.bytes, offset, [count, element, accessor.stride])?);
+            let bytes = elements(file, json, view.bytes, offset, [count, element, accessor.stride])?;
+            accessor.bytes = Some(Cow::Borrowed(bytes));
         } else if count > MAX_ZEROS {
             file.error(json, format!("{count} elements without a bufferView are too many"));
             return None;
@@ -163,15 +187,32 @@ impl<'b> Accessor<'b> {
         Some(Sparse { indices, values })
     }
 
+    /// Numbers that are at hand, of `n_components` for each element.
+    pub(super) fn of_floats(values: &[f32], n_components: usize) -> Self {
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        Self::of_bytes(bytes, Component::F32, n_components)
+    }
+
+    /// Numbers of vertices that are at hand.
+    pub(super) fn of_indices(values: impl Iterator<Item = u32>) -> Self {
+        Self::of_bytes(values.flat_map(u32::to_le_bytes).collect(), Component::U32, 1)
+    }
+
+    fn of_bytes(bytes: Vec<u8>, component: Component, n_components: usize) -> Self {
+        let stride = n_components * component.n_bytes();
+        let (count, bytes) = (bytes.len() / stride, Some(Cow::Owned(bytes)));
+        Self { count, n_components, component, is_normalized: false, bytes, stride, sparse: None }
+    }
+
     /// The bytes of an element, of which there are enough; `None` if it is zero.
-    fn element(&self, index: usize) -> Option<&'b [u8]> {
+    fn element(&self, index: usize) -> Option<&[u8]> {
         if let Some(sparse) = &self.sparse
             && let Ok(place) = sparse.indices.binary_search(&(index as u32))
         {
             let n_bytes = self.n_components * self.component.n_bytes();
             return Some(&sparse.values[place * n_bytes..]);
         }
-        Some(&self.bytes?[index * self.stride..])
+        Some(&self.bytes.as_deref()?[index * self.stride..])
     }
 
     /// The first N numbers of an element; those that it does not have are zero.

@@ -1,10 +1,16 @@
 //! Materials: metallic-roughness with its extensions as `principled`, emission as an area light, alpha as that of shapes.
 
-use etendue_scene::document::{Entity, MaterialEntity, MaterialReference, Value};
+use etendue_math::Transform;
+use etendue_scene::document::{
+    Entity, MaterialEntity, MaterialReference, TextureEntity, TextureValue, Value,
+};
 
 use super::texture::Use;
 use super::{Reader, located};
 use crate::json::Json;
+
+/// The attribute of meshes that holds the colours of vertices times the base colour.
+pub(super) const VERTEX_COLOR: &str = "vertex_color";
 
 /// What shapes of a material need.
 #[derive(Clone, Debug)]
@@ -19,6 +25,8 @@ pub(super) struct Surface {
     pub(super) needs_uv: bool,
     /// True if tangents of vertices matter.
     pub(super) needs_tangents: bool,
+    /// The factor of the colours of vertices, if they count.
+    pub(super) vertex_color: Option<[f32; 3]>,
 }
 
 /// A material in the making: its JSON, its place in the file and the entity with the parameters so far.
@@ -28,6 +36,10 @@ struct Draft<'a> {
     entity: Entity,
     /// Sets of texture coordinates in the order met, the first being the one taken.
     texcoords: Vec<usize>,
+    /// True if vertices have colours.
+    is_tinted: bool,
+    /// Their factor, once they are the base colour.
+    vertex_color: Option<[f32; 3]>,
 }
 
 fn float(value: f32) -> Value {
@@ -39,6 +51,21 @@ fn rgb(value: [f32; 3]) -> Value {
 }
 
 impl<'a> Draft<'a> {
+    fn new(index: usize, json: &'a Json, is_tinted: bool) -> Self {
+        let entity = Entity::new("principled");
+        Self { index, json, entity, texcoords: Vec::new(), is_tinted, vertex_color: None }
+    }
+
+    /// The name of a texture of this material; one with colours of vertices is another material.
+    fn texture_name(&self, parameter: &str) -> String {
+        let index = self.index;
+        let colors = if self.is_tinted { " with colors" } else { "" };
+        if index == usize::MAX {
+            return format!("default material{colors}/{parameter}");
+        }
+        format!("materials/{index}{colors}/{parameter}")
+    }
+
     fn set(&mut self, name: &str, value: Value) {
         self.entity = std::mem::take(&mut self.entity).with(name, value);
     }
@@ -49,22 +76,17 @@ impl<'a> Draft<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// What glTF draws without a material: white metal that is rough.
-    pub(super) fn default_surface(&mut self) -> Surface {
-        if let Some(known) = &self.default_surface {
+    /// What glTF draws without a material: white metal that is rough, times the colours of vertices.
+    pub(super) fn default_surface(&mut self, is_tinted: bool) -> Surface {
+        if let Some(known) = &self.default_surface[usize::from(is_tinted)] {
             return known.clone();
         }
-        let entity = Entity::new("principled").with("basecolor", rgb([1.0; 3]));
-        let entity = entity.with("metallic", float(1.0)).with("roughness", float(1.0));
-        let surface = Surface {
-            material: self.add_material(entity),
-            area_light: None,
-            alpha: None,
-            texcoord: 0,
-            needs_uv: false,
-            needs_tangents: false,
-        };
-        self.default_surface = Some(surface.clone());
+        let mut draft = Draft::new(usize::MAX, self.file.root, is_tinted);
+        self.set_base_color(&mut draft, None, [1.0; 3]);
+        draft.set("metallic", float(1.0));
+        draft.set("roughness", float(1.0));
+        let surface = self.finished(&mut draft, None, None);
+        self.default_surface[usize::from(is_tinted)] = Some(surface.clone());
         surface
     }
 
@@ -74,17 +96,17 @@ impl<'a> Reader<'a> {
     }
 
     /// The material of that index, made when first asked for.
-    pub(super) fn surface(&mut self, index: usize, json: &'a Json) -> Surface {
-        if let Some(known) = &self.surfaces[index] {
+    pub(super) fn surface(&mut self, index: usize, json: &'a Json, is_tinted: bool) -> Surface {
+        if let Some(known) = &self.surfaces[index][usize::from(is_tinted)] {
             return known.clone();
         }
-        let mut draft = Draft { index, json, entity: Entity::new("principled"), texcoords: Vec::new() };
+        let mut draft = Draft::new(index, json, is_tinted);
         let surface = if self.file.extension(json, "KHR_materials_unlit").is_some() {
             self.unlit(&mut draft)
         } else {
             self.lit(&mut draft)
         };
-        self.surfaces[index] = Some(surface.clone());
+        self.surfaces[index][usize::from(is_tinted)] = Some(surface.clone());
         surface
     }
 
@@ -146,6 +168,7 @@ impl<'a> Reader<'a> {
             texcoord,
             needs_uv: !draft.texcoords.is_empty(),
             needs_tangents,
+            vertex_color: draft.vertex_color,
         }
     }
 
@@ -160,7 +183,7 @@ impl<'a> Reader<'a> {
     ) -> bool {
         let Some(info) = self.file.object(object, texture) else { return false };
         draft.texcoords.push(self.texcoord(info));
-        let name = format!("materials/{}/{parameter}", draft.index);
+        let name = draft.texture_name(parameter);
         let Some(name) = self.texture(name, info, how) else { return false };
         draft.set(parameter, Value::Texture(name));
         true
@@ -200,16 +223,37 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The base colour: a factor times a texture, if there is one, or times the colours of vertices.
+    fn set_base_color(&mut self, draft: &mut Draft<'a>, texture: Option<(&'a Json, &str)>, factor: [f32; 3]) {
+        let texture = texture.filter(|(object, name)| object.get(name).is_some());
+        if let Some((object, name)) = texture {
+            if draft.is_tinted {
+                let message = "colours of vertices times a texture are not available; the texture is taken";
+                self.file.warning(draft.json, message);
+            }
+            self.set_color(draft, object, name, factor, "basecolor");
+        } else if draft.is_tinted {
+            draft.vertex_color = Some(factor);
+            let name = draft.texture_name("basecolor");
+            let entity =
+                Entity::new("meshattribute").with("name", Value::Strings(vec![VERTEX_COLOR.to_owned()]));
+            self.add_texture(&name, TextureValue::Spectrum, located(entity, draft.json));
+            draft.set("basecolor", Value::Texture(name));
+        } else {
+            draft.set("basecolor", rgb(factor));
+        }
+    }
+
     /// Gives the factor of alpha and its texture.
     fn metallic_roughness(&mut self, draft: &mut Draft<'a>) -> (f32, Option<&'a Json>) {
         let Some(pbr) = self.file.object(draft.json, "pbrMetallicRoughness") else {
-            draft.set("basecolor", rgb([1.0; 3]));
+            self.set_base_color(draft, None, [1.0; 3]);
             draft.set("metallic", float(1.0));
             draft.set("roughness", float(1.0));
             return (1.0, None);
         };
         let [r, g, b, a] = self.file.floats(pbr, "baseColorFactor").unwrap_or([1.0; 4]);
-        self.set_color(draft, pbr, "baseColorTexture", [r, g, b], "basecolor");
+        self.set_base_color(draft, Some((pbr, "baseColorTexture")), [r, g, b]);
         let texture = "metallicRoughnessTexture";
         self.set_number(draft, pbr, ["metallicFactor", texture, "b"], 1.0, "metallic");
         self.set_number(draft, pbr, ["roughnessFactor", texture, "g"], 1.0, "roughness");
@@ -221,7 +265,7 @@ impl<'a> Reader<'a> {
         /// F0 of index 1.5.
         const F0: f32 = 0.04;
         let [r, g, b, a] = self.file.floats(old, "diffuseFactor").unwrap_or([1.0; 4]);
-        self.set_color(draft, old, "diffuseTexture", [r, g, b], "basecolor");
+        self.set_base_color(draft, Some((old, "diffuseTexture")), [r, g, b]);
         draft.set("metallic", float(0.0));
         let specular = self.file.floats(old, "specularFactor").unwrap_or([1.0; 3]);
         let texture = "specularGlossinessTexture";
@@ -283,18 +327,15 @@ impl<'a> Reader<'a> {
         let Some(Value::Texture(amount)) = draft.entity.parameters.pop().map(|p| p.value) else { return };
         let entity = Entity::new("mix").with("tex1", float(least)).with("tex2", float(most));
         let entity = entity.with("amount", Value::Texture(amount));
-        let name = format!("materials/{}/{parameter} mixed", draft.index);
-        self.add_float_texture(&name, located(entity, film));
+        let name = draft.texture_name(&format!("{parameter} mixed"));
+        self.add_texture(&name, TextureValue::Float, located(entity, film));
         draft.set(parameter, Value::Texture(name));
     }
 
-    fn add_float_texture(&mut self, name: &str, entity: Entity) {
-        self.document.textures.push(etendue_scene::document::TextureEntity {
-            name: name.to_owned(),
-            value: etendue_scene::document::TextureValue::Float,
-            world_from_texture: etendue_math::Transform::IDENTITY,
-            entity,
-        });
+    fn add_texture(&mut self, name: &str, value: TextureValue, entity: Entity) {
+        let name = name.to_owned();
+        let world_from_texture = Transform::IDENTITY;
+        self.document.textures.push(TextureEntity { name, value, world_from_texture, entity });
     }
 
     /// Transmission, volume and dispersion.
@@ -365,7 +406,7 @@ impl<'a> Reader<'a> {
         let how = cutoff.map_or(Use::Channel("a", factor), |cutoff| Use::Cut("a", factor, cutoff));
         if let Some(info) = texture {
             draft.texcoords.push(self.texcoord(info));
-            let name = format!("materials/{}/alpha", draft.index);
+            let name = draft.texture_name("alpha");
             if let Some(name) = self.texture(name, info, how) {
                 return Some(Value::Texture(name));
             }

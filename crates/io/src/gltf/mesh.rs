@@ -2,9 +2,12 @@
 
 use etendue_math::{Normal3, Point2, Point3, Vector3};
 use etendue_scene::LoadedMesh;
+use etendue_scene::assets::{AttributeDomain, MeshAttribute};
 
 use super::Reader;
 use super::accessors::Accessor;
+use super::draco::Compressed;
+use super::material::VERTEX_COLOR;
 use super::matrix::Matrix;
 use crate::json::Json;
 
@@ -15,10 +18,18 @@ pub(super) struct Wanted<'w> {
     pub(super) texcoord: usize,
     /// Whether tangents of vertices matter.
     pub(super) tangents: bool,
+    /// Factor of the colours of vertices, if they matter.
+    pub(super) vertex_color: Option<[f32; 3]>,
     /// Weights of morph targets.
     pub(super) weights: &'w [f32],
     /// Maps of the joints of a skin, from the mesh at rest to the world.
     pub(super) joints: Option<&'w [Matrix]>,
+}
+
+/// Attributes of a primitive or of a morph target, with the data that replaces their accessors if it is compressed.
+struct Attributes<'a> {
+    json: &'a Json,
+    compressed: Option<Compressed<'a>>,
 }
 
 /// Numbers of vertices in the accessors, and the triangles between them.
@@ -32,22 +43,19 @@ impl<'a> Reader<'a> {
     /// The mesh of a primitive; `None` if it holds no triangles or is in error, which is reported.
     pub(super) fn primitive(&self, primitive: &'a Json, wanted: &Wanted<'_>) -> Option<LoadedMesh> {
         let file = &self.file;
-        if file.extension(primitive, "KHR_draco_mesh_compression").is_some() {
-            file.error_with_help(
-                primitive,
-                "the mesh is compressed by Draco (KHR_draco_mesh_compression), which cannot be read",
-                "export without compression, or decompress with: gltf-transform cp IN OUT",
-            );
-            return None;
-        }
         let attributes = file.object(primitive, "attributes")?;
         if attributes.get("POSITION").is_none() {
             file.warning(primitive, "a primitive without \"POSITION\" is left out");
             return None;
         }
-        let positions = self.attribute(attributes, "POSITION", &[3], None)?;
+        let compressed = match file.extension(primitive, "KHR_draco_mesh_compression") {
+            Some(extension) => Some(self.decompress(extension)?),
+            None => None,
+        };
+        let attributes = Attributes { json: attributes, compressed };
+        let positions = self.attribute(&attributes, "POSITION", &[3], None)?;
         let n = positions.count;
-        let topology = self.topology(primitive, n)?;
+        let topology = self.topology(primitive, &attributes, n)?;
         let morphs = self.morphs(primitive, wanted.weights, n);
         let mut mesh = LoadedMesh { triangles: topology.triangles, ..LoadedMesh::default() };
         let vertices = &topology.vertices;
@@ -61,40 +69,75 @@ impl<'a> Reader<'a> {
             deltas.fold(vector(base, vertex), |sum, (weight, target)| sum + vector(target, vertex) * weight)
         };
         mesh.positions = vertices.iter().map(|v| Point3::ORIGIN + morphed(&positions, 0, *v)).collect();
-        if let Some(normals) = self.attribute(attributes, "NORMAL", &[3], Some(n)) {
+        if let Some(normals) = self.attribute(&attributes, "NORMAL", &[3], Some(n)) {
             let normal = |v: &u32| morphed(&normals, 1, *v).as_normal();
             mesh.normals = vertices.iter().map(normal).collect();
         }
         if wanted.tangents && !mesh.normals.is_empty() {
-            if let Some(tangents) = self.attribute(attributes, "TANGENT", &[3, 4], Some(n)) {
+            if let Some(tangents) = self.attribute(&attributes, "TANGENT", &[3, 4], Some(n)) {
                 mesh.tangents = vertices.iter().map(|v| morphed(&tangents, 2, *v)).collect();
             }
         }
         let name = format!("TEXCOORD_{}", wanted.texcoord);
-        if let Some(uvs) = self.attribute(attributes, &name, &[2], Some(n)) {
+        if let Some(uvs) = self.attribute(&attributes, &name, &[2], Some(n)) {
             let uv = |v: &u32| {
                 let [u, v] = uvs.floats(*v as usize);
                 Point2::new(u, 1.0 - v)
             };
             mesh.uvs = vertices.iter().map(uv).collect();
         }
+        if let Some(factor) = wanted.vertex_color
+            && let Some(colors) = self.attribute(&attributes, "COLOR_0", &[3, 4], Some(n))
+        {
+            let color = |vertex: &u32| -> [f32; 3] {
+                let color: [f32; 3] = colors.floats(*vertex as usize);
+                std::array::from_fn(|i| (factor[i] * color[i]).clamp(0.0, 1.0))
+            };
+            mesh.attributes.push(MeshAttribute {
+                name: VERTEX_COLOR.to_owned(),
+                domain: AttributeDomain::Vertex,
+                n_components: 3,
+                values: vertices.iter().flat_map(color).collect(),
+            });
+        }
         if let Some(joints) = wanted.joints {
-            self.skin(attributes, joints, vertices, n, &mut mesh);
+            self.skin(&attributes, joints, vertices, n, &mut mesh);
         }
         self.check_finite(primitive, vertices, &mut mesh)?;
         Some(mesh)
     }
 
+    /// True if vertices of a primitive have colours other than white.
+    pub(super) fn is_tinted(&self, primitive: &'a Json) -> bool {
+        let Some(at) = primitive.get("attributes").and_then(|attributes| attributes.get("COLOR_0")) else {
+            return false;
+        };
+        let is_compressed =
+            primitive.get("extensions").is_some_and(|e| e.get("KHR_draco_mesh_compression").is_some());
+        let Some(index) = self.file.as_size(at) else { return false };
+        if is_compressed {
+            return true;
+        }
+        *self.tinted.borrow_mut().entry(index).or_insert_with(|| {
+            let colors = Accessor::read(&self.file, &self.buffers, at, index);
+            colors.is_some_and(|colors| (0..colors.count).any(|i| colors.floats(i) != [1.0; 3]))
+        })
+    }
+
     /// An attribute with one of the given numbers of components and, if `n` says so, n elements.
     fn attribute(
         &self,
-        attributes: &'a Json,
+        attributes: &Attributes<'a>,
         name: &str,
         n_components: &[usize],
         n: Option<usize>,
     ) -> Option<Accessor<'_>> {
-        let at = attributes.get(name)?;
-        let accessor = Accessor::read(&self.file, &self.buffers, at, self.file.as_size(at)?)?;
+        let at = attributes.json.get(name)?;
+        let compressed = attributes.compressed.as_ref();
+        let accessor = match compressed.and_then(|data| self.decompressed_attribute(data, name, at)) {
+            Some(accessor) => accessor,
+            None => Accessor::read(&self.file, &self.buffers, at, self.file.as_size(at)?)?,
+        };
         if !n_components.contains(&accessor.n_components) {
             self.file
                 .error(at, format!("\"{name}\" cannot have elements of {} numbers", accessor.n_components));
@@ -108,10 +151,11 @@ impl<'a> Reader<'a> {
         Some(accessor)
     }
 
-    fn topology(&self, primitive: &'a Json, n: usize) -> Option<Topology> {
+    fn topology(&self, primitive: &'a Json, attributes: &Attributes<'a>, n: usize) -> Option<Topology> {
         let file = &self.file;
-        let indices = match primitive.get("indices") {
-            Some(at) => {
+        let indices = match (&attributes.compressed, primitive.get("indices")) {
+            (Some(compressed), _) => Some((primitive, compressed.indices())),
+            (None, Some(at)) => {
                 let accessor = Accessor::read(file, &self.buffers, at, file.as_size(at)?)?;
                 if accessor.n_components != 1 || !accessor.holds_integers() {
                     file.error(at, "indices are unsigned whole numbers: SCALAR of 5121, 5123 or 5125");
@@ -119,10 +163,11 @@ impl<'a> Reader<'a> {
                 }
                 Some((at, accessor))
             }
-            None => None,
+            (None, None) => None,
         };
         let n_indices = indices.as_ref().map_or(n, |(_, accessor)| accessor.count);
-        let mode = file.size(primitive, "mode", 4);
+        // What was a strip is decompressed as triangles.
+        let mode = if attributes.compressed.is_some() { 4 } else { file.size(primitive, "mode", 4) };
         let n_triangles = match mode {
             4 => n_indices / 3,
             5 | 6 => n_indices.saturating_sub(2),
@@ -189,7 +234,8 @@ impl<'a> Reader<'a> {
         let targets = self.file.array(primitive, "targets");
         let weighted = targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
         let read = |(target, weight): (&'a Json, &f32)| {
-            let part = |name| self.attribute(target, name, &[3], Some(n));
+            let target = Attributes { json: target, compressed: None };
+            let part = |name| self.attribute(&target, name, &[3], Some(n));
             (*weight, ["POSITION", "NORMAL", "TANGENT"].map(part))
         };
         weighted.map(read).collect()
@@ -198,7 +244,7 @@ impl<'a> Reader<'a> {
     /// Moves vertices by the joints that hold them.
     fn skin(
         &self,
-        attributes: &'a Json,
+        attributes: &Attributes<'a>,
         joints: &[Matrix],
         vertices: &[u32],
         n: usize,
@@ -211,8 +257,10 @@ impl<'a> Reader<'a> {
         };
         let sets: Vec<_> = (0..8).map_while(set).collect();
         if sets.is_empty() {
-            self.file
-                .warning(attributes, "a mesh with a skin needs JOINTS_0 and WEIGHTS_0; it stays as it is");
+            self.file.warning(
+                attributes.json,
+                "a mesh with a skin needs JOINTS_0 and WEIGHTS_0; it stays as it is",
+            );
             return;
         }
         for (place, vertex) in vertices.iter().enumerate() {
@@ -224,7 +272,7 @@ impl<'a> Reader<'a> {
                     let Some(joint) = joints.get(number as usize) else {
                         let n = joints.len();
                         let message = format!("vertex {vertex} hangs on joint {number}, but there are {n}");
-                        self.file.error(attributes, message);
+                        self.file.error(attributes.json, message);
                         return;
                     };
                     map.add_scaled(joint, f64::from(weight));

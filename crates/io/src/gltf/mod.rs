@@ -12,6 +12,7 @@
 mod accessors;
 mod buffers;
 mod container;
+mod draco;
 mod file;
 mod light;
 mod material;
@@ -23,7 +24,8 @@ mod texture;
 #[cfg(test)]
 mod tests;
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
 use std::path::Path;
 
 use etendue_scene::diagnostics::FileId;
@@ -38,8 +40,9 @@ use file::{File, span};
 use material::Surface;
 
 /// Extensions that are understood, or that change nothing which is shown.
-const EXTENSIONS: [&str; 24] = [
+const EXTENSIONS: [&str; 25] = [
     "EXT_mesh_gpu_instancing",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -66,8 +69,7 @@ const EXTENSIONS: [&str; 24] = [
 ];
 
 /// Extensions that say more about what cannot be read where they are used, which may be nowhere.
-const REPORTED_WHERE_USED: [&str; 3] =
-    ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+const REPORTED_WHERE_USED: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 /// Vertices and triangles that a file may have beyond one for each of its bytes: more can only come from using the same
 /// data over and over.
@@ -133,8 +135,11 @@ struct Reader<'a> {
     document: Document,
     /// Names of the files of pictures; the inner `None` is a picture that cannot be read.
     pictures: Vec<Option<Option<String>>>,
-    surfaces: Vec<Option<Surface>>,
-    default_surface: Option<Surface>,
+    /// Each without and with colours of vertices.
+    surfaces: Vec<[Option<Surface>; 2]>,
+    default_surface: [Option<Surface>; 2],
+    /// Whether accessors of colours hold others than white.
+    tinted: RefCell<HashMap<usize, bool>>,
     /// Vertices and triangles made so far.
     spent: Cell<u64>,
 }
@@ -153,9 +158,18 @@ impl<'a> Reader<'a> {
         let file = File::new(root);
         let buffers = Buffers::new(&file, document.base_directory.clone(), binary);
         let count = |list| file.array(root, list).len();
-        let (pictures, surfaces) = (vec![None; count("images")], vec![None; count("materials")]);
+        let (pictures, surfaces) = (vec![None; count("images")], vec![[None, None]; count("materials")]);
         let spent = Cell::new(0);
-        let mut reader = Reader { file, buffers, document, pictures, surfaces, default_surface: None, spent };
+        let mut reader = Reader {
+            file,
+            buffers,
+            document,
+            pictures,
+            surfaces,
+            default_surface: [None, None],
+            tinted: RefCell::default(),
+            spent,
+        };
         if reader.check_header() {
             reader.read_scene();
         }
@@ -200,6 +214,11 @@ impl<'a> Reader<'a> {
             file.warning(at, "animations are not played; the scene stands still");
         }
         complete
+    }
+
+    /// Vertices and triangles that the file may still have.
+    fn left(&self) -> u64 {
+        (self.buffers.n_bytes() + FREE_ELEMENTS).saturating_sub(self.spent.get())
     }
 
     /// Takes vertices and triangles from what the file may have; `None` if it has too many, which is an error at `at`.

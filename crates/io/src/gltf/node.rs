@@ -211,6 +211,7 @@ impl<'a> Reader<'a> {
             let wanted = Wanted {
                 texcoord: surface.texcoord,
                 tangents: surface.needs_tangents,
+                vertex_color: surface.vertex_color,
                 weights: &weights,
                 joints: None,
             };
@@ -266,6 +267,7 @@ impl<'a> Reader<'a> {
             let wanted = Wanted {
                 texcoord: surface.texcoord,
                 tangents: surface.needs_tangents,
+                vertex_color: surface.vertex_color,
                 weights: &weights,
                 joints: joints.as_deref(),
             };
@@ -307,9 +309,10 @@ impl<'a> Reader<'a> {
     }
 
     fn surface_of(&mut self, primitive: &'a Json) -> Surface {
+        let is_tinted = self.is_tinted(primitive);
         match self.file.reference(primitive, "material", "materials") {
-            Some((index, material)) => self.surface(index, material),
-            None => self.default_surface(),
+            Some((index, material)) => self.surface(index, material, is_tinted),
+            None => self.default_surface(is_tinted),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Small files made here, each held against the document that it should become.
 
 mod broken;
+mod compressed;
 mod fuzz;
 mod materials;
 mod nodes;

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use etendue_image::Texels;
-use etendue_math::{Normal3, Point2, Point3, Rng, Vector3};
+use etendue_math::{Normal3, Point2, Point3, Rng, Transform, Vector3};
 use etendue_spectrum::{Sampled, Spectrum, Wavelengths};
 
 use super::*;
@@ -17,7 +17,7 @@ use crate::bsdf::tabulated::BrdfGrid;
 use crate::bsdf::{Base, BsdfKind, Classic, Lobes, TransportMode, classic};
 use crate::diagnostics::{Diagnostics, Severity};
 use crate::document::{Entity, Value};
-use crate::parameters::BuildContext;
+use crate::parameters::{BuildContext, Parameters, SpectrumRole};
 use crate::texture::{Bilerp, FloatTexture, FloatTextureNode, Mapping2, TextureContext};
 
 /// What a build needs and makes.
@@ -549,6 +549,43 @@ fn normal_maps_turn_the_normal() {
     // A grey image is no normal map.
     fixture.assets.images.insert("n.png".to_owned(), Arc::new(Texels::from_fn(1, 1, 1, |_, _, _| 0.5)));
     assert!(fixture.build(&entity).1.has_errors());
+}
+
+/// A texture of normals runs along u and v even where these are mirrored, and its relief may be scaled.
+#[test]
+fn normal_textures_follow_v() {
+    let tilted = Vector3::new(0.0, 0.6, 0.8);
+    let encoded = [tilted.x, tilted.y, tilted.z].map(|x| 0.5 * (x + 1.0));
+    let mut fixture = Fixture::default();
+    fixture
+        .assets
+        .images
+        .insert("n.png".to_owned(), Arc::new(Texels::from_fn(1, 1, 3, |_, _, c| encoded[c])));
+    let picture = plain("imagemap").with("filename", strings("n.png")).with("encoding", strings("linear"));
+    let mut context_of_build = BuildContext::new(&fixture.assets);
+    let texture = fixture.textures.build_spectrum(
+        &mut Parameters::new(&picture, &mut context_of_build),
+        &Transform::IDENTITY,
+        SpectrumRole::Unbounded,
+    );
+    let mut normal = |scale: f32, mirrored: bool| {
+        let entity = plain("principled").with("normaltexture", Value::Texture("n".to_owned()));
+        let entity = entity.with("normalscale", floats(scale));
+        let mut context_of_build = BuildContext::new(&fixture.assets);
+        context_of_build.spectrum_textures.insert(("n".to_owned(), SpectrumRole::Unbounded), texture);
+        let parameters = Parameters::new(&entity, &mut context_of_build);
+        let material = fixture.materials.build(parameters, &fixture.named).expect("sound");
+        assert!(context_of_build.diagnostics.list().is_empty(), "{:?}", context_of_build.diagnostics.list());
+        let mut ctx = context();
+        if mirrored {
+            ctx.dpdv = -ctx.dpdv;
+        }
+        fixture.bsdf(material, &ctx, &mut Wavelengths::sample_visible(0.5)).unwrap().ns().as_vector()
+    };
+    let near = |a: Vector3, b: Vector3| assert!((a - b.normalized()).length() < 1e-5, "{a:?} is not {b:?}");
+    near(normal(1.0, false), tilted);
+    near(normal(1.0, true), Vector3::new(0.0, -0.6, 0.8));
+    near(normal(0.5, false), Vector3::new(0.0, 0.3, 0.8));
 }
 
 /// Anisotropy follows the first tangent, also when the frame is turned.

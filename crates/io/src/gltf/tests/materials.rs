@@ -205,3 +205,26 @@ fn specular_glossiness() {
         &["basecolor 0.5 0.5 0.5", "metallic 0", "specularcolor 1 2 1", "roughness 0.25"],
     );
 }
+
+/// Colours of vertices multiply the base colour where there is no texture; white ones change nothing.
+#[test]
+fn vertex_colors() {
+    let with = |colors: &[f32]| {
+        let mut data = Data::default();
+        let (p, c) = (data.floats("VEC3", &TRIANGLE), data.floats("VEC3", colors));
+        document(data.file(&format!(
+            r#""nodes": [{{"mesh": 0}}], "materials": [{{"pbrMetallicRoughness": {{"baseColorFactor": [0.5, 1, 1, 1]}}}}],
+            "meshes": [{{"primitives": [{{"attributes": {{"POSITION": {p}, "COLOR_0": {c}}}, "material": 0}}]}}]"#
+        )))
+    };
+    let plain = with(&[1.0; 9]);
+    assert!(mesh_of(&plain, &plain.shapes[0]).attributes.is_empty());
+    let made = with(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.25]);
+    let attribute = &mesh_of(&made, &made.shapes[0]).attributes[0];
+    assert_eq!(attribute.values, [0.5, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.25]);
+    assert_eq!(texts(&made.textures[0].entity), ["name \"vertex_color\""]);
+    assert_eq!(attribute.name, "vertex_color");
+    assert_eq!(texts(&made.materials[1].entity)[0], "basecolor \"materials/0 with colors/basecolor\"");
+    let (scene, problems) = Scene::build(&made, load_assets(&made).0);
+    assert!(scene.is_some(), "{:?}", messages(&problems));
+}

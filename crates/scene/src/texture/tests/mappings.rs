@@ -10,6 +10,7 @@ fn mappings_agree_with_finite_differences() {
     let texture_from_world = placed.inverse();
     let mappings = [
         Mapping2::Uv { su: 3.0, sv: -2.0, du: 0.1, dv: 0.2 },
+        Mapping2::TurnedUv { rows: [[0.5, -1.5], [2.0, 0.3]], du: 0.1, dv: 0.2 },
         Mapping2::Spherical(texture_from_world),
         Mapping2::Cylindrical(texture_from_world),
         Mapping2::Planar {

@@ -37,12 +37,75 @@ fn wrap_modes() {
         (WrapMode::Clamp, 0.2, 1.0),
         (WrapMode::Black, 0.0, 0.0),
         (WrapMode::OctahedralSphere, 0.2, 1.0),
+        (WrapMode::Mirror, 0.2, 1.0),
     ] {
         assert!((value(wrap, -0.25) - before).abs() < 1e-6, "{wrap:?}: {}", value(wrap, -0.25));
         assert!((value(wrap, 1.25) - after).abs() < 1e-6, "{wrap:?}: {}", value(wrap, 1.25));
         assert!((value(wrap, 0.25) - 0.2).abs() < 1e-6);
     }
     assert!((value(WrapMode::Repeat, 1000.25) - 0.2).abs() < 1e-6);
+    assert!((value(WrapMode::Mirror, 1.75) - 0.2).abs() < 1e-6);
+    assert!((value(WrapMode::Mirror, 1001.75) - 0.2).abs() < 1e-6);
+}
+
+/// Numbers come from the channel that is asked for, which alpha is where there is one, and may be cut to 0 and 1.
+#[test]
+fn channels() {
+    let texels = |n_channels: usize| {
+        let texel = [51, 102, 153, 204];
+        let texel = if n_channels == 2 { vec![51, 204] } else { texel[..n_channels].to_vec() };
+        let mut assets = Assets::default();
+        let picture = Texels::new(1, 1, n_channels, TexelData::U8(texel));
+        assets.images.insert("a.png".to_owned(), Arc::new(picture));
+        assets
+    };
+    let entity =
+        Entity::new("imagemap").with("filename", strings("a.png")).with("encoding", strings("linear"));
+    let value = |entity: &Entity, n_channels: usize| {
+        let (textures, texture, n_problems) = read_float(entity, &texels(n_channels));
+        assert_eq!(n_problems, 0);
+        textures.eval_float(texture, &at_uv(0.3, 0.6))
+    };
+    let with = |channel: &str| entity.clone().with("channel", strings(channel));
+    for (channel, n_channels, expected) in [
+        ("r", 4, 0.2),
+        ("g", 4, 0.4),
+        ("b", 4, 0.6),
+        ("a", 4, 0.8),
+        ("b", 3, 0.6),
+        ("a", 3, 1.0),
+        ("g", 2, 0.2),
+        ("a", 2, 0.8),
+        ("b", 1, 0.2),
+        ("a", 1, 1.0),
+        ("", 4, 0.2),
+    ] {
+        let found = value(&with(channel), n_channels);
+        assert!((found - expected).abs() < 1e-6, "{channel} of {n_channels}: {found} but {expected}");
+    }
+    let cut =
+        |cutoff: f32| value(&with("g").with("scale", floats(&[0.5])).with("cutoff", floats(&[cutoff])), 4);
+    assert_eq!((cut(0.19), cut(0.21)), (1.0, 0.0));
+}
+
+/// A tint multiplies the linear colours of a picture: white under a tint is the tint.
+#[test]
+fn tints() {
+    let assets = |texel: [u8; 3]| {
+        let mut assets = Assets::default();
+        let picture = Texels::new(1, 1, 3, TexelData::U8(texel.to_vec()));
+        assets.images.insert("a.png".to_owned(), Arc::new(picture));
+        assets
+    };
+    let entity =
+        Entity::new("imagemap").with("filename", strings("a.png")).with("encoding", strings("linear"));
+    let eval = |entity: &Entity, texel: [u8; 3]| {
+        let (textures, texture, n_problems) = read_spectrum(entity, &assets(texel), SpectrumRole::Albedo);
+        assert_eq!(n_problems, 0);
+        textures.eval_spectrum(texture, &at_uv(0.5, 0.5), &lambda())
+    };
+    let tint = Value::Rgb(vec![[0.2, 0.4, 0.6]]);
+    assert_eq!(eval(&entity.clone().with("tint", tint), [255; 3]), eval(&entity, [51, 102, 153]));
 }
 
 /// On an equal-area map of all directions, what lies across a border is the neighbouring direction.
