@@ -34,6 +34,7 @@ use etendue_scene::{Diagnostics, Document, Span};
 
 use crate::file::{decompressed, read_file};
 use crate::json::{Json, JsonError, Kind};
+use crate::stage::{Ground, Up, set_stage};
 use buffers::Buffers;
 use container::Container;
 use file::{File, span};
@@ -76,17 +77,23 @@ const REPORTED_WHERE_USED: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_
 const FREE_ELEMENTS: u64 = 1 << 24;
 
 /// Reads a glTF or GLB file; files that it names are read too, but for pictures, which are left to
-/// [`load_assets`](crate::load_assets).
+/// [`load_assets`](crate::load_assets). What the file lacks of camera and lights comes from [`set_stage`].
 ///
 /// The document is as complete as the errors in the diagnostics allow.
 #[must_use]
 pub fn read_gltf(path: &Path) -> (Document, Diagnostics) {
-    match read_file(path) {
-        Ok(bytes) => {
-            read_gltf_bytes(&path.display().to_string(), bytes, path.parent().unwrap_or(Path::new("")))
-        }
-        Err(error) => failed(error.to_string()),
+    let bytes = match read_file(path) {
+        Ok(bytes) => bytes,
+        Err(error) => return failed(error.to_string()),
+    };
+    let base = path.parent().unwrap_or(Path::new(""));
+    let (mut document, mut diagnostics) = read_gltf_bytes(&path.display().to_string(), bytes, base);
+    if !diagnostics.has_errors() {
+        let is_bare = document.camera.is_none() && document.lights.is_empty();
+        let ground = if is_bare { Ground::Disk } else { Ground::None };
+        set_stage(&mut document, Up::Y, ground, &mut diagnostics);
     }
+    (document, diagnostics)
 }
 
 fn failed(message: String) -> (Document, Diagnostics) {
