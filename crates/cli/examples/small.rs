@@ -10,18 +10,15 @@
 #[cfg(test)]
 #[path = "small/tests.rs"]
 mod tests;
-
 /// A point, a direction or a colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct V(f64, f64, f64);
-
 #[rustfmt::skip]
 impl V {
     fn dot(self, b: V) -> f64 { self.0 * b.0 + self.1 * b.1 + self.2 * b.2 }
     fn cross(self, b: V) -> V { V(self.1 * b.2 - self.2 * b.1, self.2 * b.0 - self.0 * b.2, self.0 * b.1 - self.1 * b.0) }
     fn normalized(self) -> V { self * (1.0 / self.dot(self).sqrt()) }
 }
-
 #[rustfmt::skip]
 mod operators {
     use super::V;
@@ -217,6 +214,13 @@ impl Program {
         });
         paths.fold(V(0.0, 0.0, 0.0), |sum, light| sum + light) * (1.0 / n_samples as f64)
     }
+    /// A file of text (PPM). As printed, radiance itself; else encoded for screens.
+    fn encode(&self, pixels: &[V], size: usize) -> String {
+        let encoded = |x: f64| if self.as_printed { x } else { 255.0 * (self.exposure * x).powf(0.4545) };
+        let byte = |x: f64| format!("{}\n", encoded(x).min(255.0) as u8);
+        let bytes = pixels.iter().flat_map(|V(r, g, b)| [byte(*r), byte(*g), byte(*b)]);
+        format!("P3 {size} {size} 255\n") + &bytes.collect::<String>()
+    }
 }
 
 fn main() -> std::io::Result<()> {
@@ -241,10 +245,5 @@ fn main() -> std::io::Result<()> {
     std::thread::scope(|scope| (0..n_threads).for_each(|_| drop(scope.spawn(work))));
     let mean = pixels.iter().fold(V(0.0, 0.0, 0.0), |sum, p| sum + *p) * (1.0 / pixels.len() as f64);
     eprintln!("\r{:.1} s, mean radiance {mean:.2?}", started.elapsed().as_secs_f64());
-    // As printed, radiance itself; else encoded for screens.
-    let encoded = |x: f64| if program.as_printed { x } else { 255.0 * (program.exposure * x).powf(0.4545) };
-    let byte = |x: f64| format!("{}\n", encoded(x).min(255.0) as u8);
-    let bytes = pixels.iter().flat_map(|V(r, g, b)| [byte(*r), byte(*g), byte(*b)]);
-    let file = format!("P3 {size} {size} 255\n") + &bytes.collect::<String>();
-    std::fs::write(value("--out").map_or("small.ppm", String::as_str), file)
+    std::fs::write(value("--out").map_or("small.ppm", String::as_str), program.encode(&pixels, size))
 }

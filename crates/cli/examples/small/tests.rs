@@ -192,3 +192,15 @@ fn scenes_have_their_light() {
     let Kind::Diffuse(colour) = Program::new(false, false).objects[0].1 else { panic!("the floor is matte") };
     assert_eq!(colour * (1.0 / 0.6), WHITE);
 }
+
+/// SPEC SMALL-9: a text file with three numbers for each pixel, at most 255; as printed they are the radiance without its
+/// fraction.
+#[test]
+fn pictures_are_text() {
+    let pixels = [V(0.0, 12.9, 254.99), V(255.0, 1e9, 40.0), O, V(1.0, 2.0, 3.0)];
+    let printed = Program::new(false, true).encode(&pixels, 2);
+    assert_eq!(printed, "P3 2 2 255\n0\n12\n254\n255\n255\n40\n0\n0\n0\n1\n2\n3\n");
+    let own = Program::new(false, false).encode(&[V(500.0, 0.0, 125.0)], 1);
+    // A quarter of what is white has the square of a half, nearly.
+    assert_eq!(own, "P3 1 1 255\n255\n0\n135\n");
+}

@@ -1,5 +1,6 @@
 //! The command as a user runs it: the real program in temporary folders.
 
+mod accelerators;
 mod arguments;
 mod bad_files;
 mod bad_scenes;

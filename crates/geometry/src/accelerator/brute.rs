@@ -19,12 +19,10 @@ impl Brute {
         (0..self.n_primitives).try_for_each(|primitive| probe.test(primitive))
     }
 
-    #[expect(clippy::unused_self, reason = "every structure answers this")]
     pub(super) const fn n_nodes(&self) -> usize {
         0
     }
 
-    #[expect(clippy::unused_self, reason = "every structure answers this")]
     pub(super) const fn memory_bytes(&self) -> usize {
         0
     }
