@@ -8,6 +8,7 @@ mod vector;
 
 pub mod approx;
 mod bounds;
+pub mod expression;
 mod frame;
 mod lanes;
 mod numeric;
