@@ -9,7 +9,7 @@ use crate::hit::{GeometryId, Hit, NO_INSTANCE, SurfaceDerivatives, SurfacePoint}
 use crate::instance::Instance;
 use crate::mesh::heap;
 use crate::shape::entity::Entity;
-use crate::shape::{Candidates, entity_of, resolve};
+use crate::shape::{Candidates, Implicit, Traced, entity_of, resolve};
 use crate::work::{Unnoted, Work};
 
 /// Everything that a ray can meet. Made by [`crate::GeometryBuilder`].
@@ -35,7 +35,7 @@ pub struct GeometryCounts {
     pub n_triangles: usize,
     /// Bilinear patches stored.
     pub n_patches: usize,
-    /// Spheres, disks, cylinders and other shapes given by a short formula.
+    /// Spheres, disks, cylinders and other shapes given by a formula.
     pub n_quadrics: usize,
     /// Curves stored.
     pub n_curves: usize,
@@ -266,12 +266,33 @@ impl<F: Fn(&Hit) -> bool, W: Work, const ANY: bool> Search<'_, F, W, ANY> {
                 (verdict, _) => verdict,
             };
         }
+        if let Entity::Traced(shape) = entity
+            && let Traced::Implicit(surface) = &**shape
+        {
+            return self.test_implicit(item, surface, ray, t_max);
+        }
         let candidates = entity.intersect(item.primitive, ray);
         match (self.found_any(item, &candidates, t_max), candidates) {
             // Refused or beyond the end; few shapes have more.
             (Verdict::Pass, [_, Some(_)]) => self.found_any(item, &entity.intersect_further(ray), t_max),
             (verdict, _) => verdict,
         }
+    }
+
+    /// Tests a cell of an implicit surface, of which only the hits that are asked for are looked for.
+    #[inline(never)]
+    fn test_implicit(&mut self, item: PrimitiveRef, surface: &Implicit, ray: &Ray, t_max: f32) -> Verdict {
+        let mut after = 0.0;
+        // A surface of so many sheets within a cell is none to see through.
+        for _ in 0..64 {
+            let Some(t) = surface.next_hit(item.primitive, ray, after, t_max.into()) else { break };
+            let verdict = self.found(item, t, [0.0; 2], t_max);
+            if verdict != Verdict::Pass {
+                return verdict;
+            }
+            after = t;
+        }
+        Verdict::Pass
     }
 
     /// Considers hits of a primitive that is no triangle, in their order.

@@ -18,6 +18,7 @@ mod heightfield;
 mod instance;
 mod lamp;
 mod light_sampling;
+mod parametric;
 mod refine;
 mod refit;
 mod revolution;
@@ -42,11 +43,13 @@ pub use hit::{
 };
 pub use lamp::{FlatLamp, Lamp};
 pub use mesh::{BilinearMesh, MeshError, TriangleMesh};
+pub use parametric::{ParametricSurface, Tessellation, tessellate};
 pub use refine::{Fractal, MAX_REFINED_TRIANGLES, Refined, TooManyTriangles};
 pub use refit::MovedVertices;
 pub use revolution::{ContourError, MAX_CONTOUR_POINTS, Revolution};
 pub use shape::{
-    Curve, CurveBasis, CurveKind, CurveSet, MovingMesh, PointCloud, Shape, bezier_segments, estimate_normals,
+    Curve, CurveBasis, CurveKind, CurveSet, ImplicitSurface, MovingMesh, PointCloud, Shape, bezier_segments,
+    estimate_normals,
 };
 pub use subdivision::loop_subdivide;
 pub use work::TraversalWork;

@@ -11,6 +11,7 @@ mod cylinder;
 mod disk;
 pub(crate) mod entity;
 pub(crate) mod globe;
+mod implicit;
 mod moving;
 mod patches;
 mod plane;
@@ -26,6 +27,8 @@ mod tests;
 
 pub use cloud::{PointCloud, estimate_normals};
 pub use curves::{Curve, CurveBasis, CurveKind, CurveSet, bezier_segments};
+pub(crate) use implicit::Implicit;
+pub use implicit::ImplicitSurface;
 pub use moving::MovingMesh;
 pub(crate) use patches::{Patches, entity_of, resolve};
 pub(crate) use traced::Traced;
@@ -117,6 +120,8 @@ pub enum Shape {
         /// How far it turns, in radians, 2 pi for all.
         phi_max_rad: f32,
     },
+    /// Where a formula is zero.
+    Implicit(ImplicitSurface),
     /// A torus around the z axis.
     Torus {
         /// From the axis to the middle of the tube.
@@ -142,7 +147,7 @@ impl Shape {
     /// True if the shape can be a light source: all but what moves by itself, curves and points.
     #[must_use]
     pub const fn can_emit(&self) -> bool {
-        !matches!(self, Self::Moving(_) | Self::Curves(_) | Self::Points(_))
+        !matches!(self, Self::Moving(_) | Self::Curves(_) | Self::Points(_) | Self::Implicit(_))
     }
 
     /// Checks the arrays of meshes; shapes given by a formula are always valid.

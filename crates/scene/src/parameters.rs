@@ -246,6 +246,25 @@ impl<'a, 'c> Parameters<'a, 'c> {
         self.entity.parameters.iter().any(|p| p.name == name)
     }
 
+    /// The number that a formula calls by this name, marked as used.
+    pub(crate) fn named_number(&mut self, name: &str) -> Option<f32> {
+        let index = self.entity.parameters.iter().position(|p| p.name == name)?;
+        let number = match &self.entity.parameters[index].value {
+            Value::Floats(values) if values.len() == 1 => values[0],
+            Value::Integers(values) if values.len() == 1 => values[0] as f32,
+            _ => return None,
+        };
+        self.used[index] = true;
+        Some(number)
+    }
+
+    /// The names of all parameters that are single numbers.
+    pub(crate) fn number_names(&self) -> Vec<String> {
+        let is_number = |value: &Value| matches!(value, Value::Floats(_) | Value::Integers(_));
+        let numbers = self.entity.parameters.iter().filter(|p| is_number(&p.value));
+        numbers.map(|p| p.name.clone()).collect()
+    }
+
     /// Accepts a parameter without using it.
     pub fn ignore(&mut self, name: &'static str) {
         let _ = self.find(name);

@@ -10,6 +10,7 @@ use super::conic::Conic;
 use super::curves::Curves;
 use super::cylinder::Cylinder;
 use super::disk::Disk;
+use super::implicit::Implicit;
 use super::moving::MovingTriangles;
 use super::patches::{self, Patches};
 use super::quadric::{self, Quadric, QuadricShape};
@@ -95,6 +96,10 @@ impl Entity {
                 } else {
                     QuadricShape::Conic(Conic::hyperboloid(p1, p2, phi_max))
                 })
+            }
+            Shape::Implicit(surface) => {
+                let implicit = Implicit::new(surface, map, reverse_orientation);
+                Self::Traced(Box::new(Traced::Implicit(implicit)))
             }
             Shape::Torus { major_radius, minor_radius, theta_min_rad, theta_max_rad, phi_max_rad } => {
                 let theta = [theta_min_rad.into(), theta_max_rad.into()];

@@ -1,3 +1,4 @@
+mod implicit;
 mod revolved;
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};

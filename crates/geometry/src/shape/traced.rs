@@ -1,4 +1,5 @@
-//! Shapes that rays meet but that are no lamps: triangles that move, curves, and points with a size.
+//! Shapes that rays meet but that are no lamps: triangles that move, curves, points with a size, and implicit
+//! surfaces.
 //!
 //! They have no sampling by area; an area light on one is left out when the scene is built.
 
@@ -7,8 +8,9 @@ use glam::DVec3;
 
 use super::cloud::Cloud;
 use super::curves::Curves;
+use super::implicit::Implicit;
 use super::moving::MovingTriangles;
-use super::{Candidates, LocalSurface};
+use super::{Candidate, Candidates, LocalSurface};
 use crate::geometry::GeometryCounts;
 
 /// A placed shape that does not emit.
@@ -20,15 +22,18 @@ pub(crate) enum Traced {
     Curves(Curves),
     /// Points with normals.
     Cloud(Cloud),
+    /// The zeros of a formula.
+    Implicit(Implicit),
 }
 
 impl Traced {
-    /// Triangles, pieces of curves, or points.
+    /// Triangles, pieces of curves, points, or cells of an implicit surface.
     pub(crate) const fn n_primitives(&self) -> u32 {
         match self {
             Self::Moving(shape) => shape.n_primitives(),
             Self::Curves(shape) => shape.n_primitives(),
             Self::Cloud(shape) => shape.n_primitives(),
+            Self::Implicit(shape) => shape.n_primitives(),
         }
     }
 
@@ -38,6 +43,7 @@ impl Traced {
             Self::Moving(shape) => shape.bounds(primitive),
             Self::Curves(shape) => shape.bounds(primitive),
             Self::Cloud(shape) => shape.bounds(primitive),
+            Self::Implicit(shape) => shape.bounds(primitive),
         }
     }
 
@@ -46,6 +52,10 @@ impl Traced {
             Self::Moving(shape) => shape.intersect(primitive, ray),
             Self::Curves(shape) => shape.intersect(primitive, ray),
             Self::Cloud(shape) => shape.intersect(primitive, ray),
+            Self::Implicit(shape) => {
+                let hit = shape.next_hit(primitive, ray, 0.0, f64::INFINITY);
+                [hit.map(|t| Candidate { t, u: 0.0, v: 0.0 }), None]
+            }
         }
     }
 
@@ -55,6 +65,7 @@ impl Traced {
             Self::Moving(shape) => shape.surface(primitive, ray, uv),
             Self::Curves(shape) => shape.surface(primitive, ray, t, uv),
             Self::Cloud(shape) => shape.surface(primitive, ray, t),
+            Self::Implicit(shape) => shape.surface(ray, t),
         }
     }
 
@@ -67,6 +78,9 @@ impl Traced {
         t: f32,
         uv: [f32; 2],
     ) -> (DVec3, crate::hit::SurfacePoint) {
+        if let Self::Implicit(shape) = self {
+            return shape.point(ray, t);
+        }
         let surface = self.surface(primitive, ray, t, uv);
         (surface.p, surface.point)
     }
@@ -75,7 +89,7 @@ impl Traced {
         match self {
             Self::Moving(shape) => shape.uv(primitive, uv),
             Self::Curves(_) => Point2::new(uv[0], uv[1]),
-            Self::Cloud(_) => Point2::default(),
+            Self::Cloud(_) | Self::Implicit(_) => Point2::default(),
         }
     }
 
@@ -85,6 +99,7 @@ impl Traced {
                 Self::Moving(shape) => shape.memory_bytes(),
                 Self::Curves(shape) => shape.memory_bytes(),
                 Self::Cloud(shape) => shape.memory_bytes(),
+                Self::Implicit(shape) => shape.memory_bytes(),
             }
     }
 
@@ -93,6 +108,7 @@ impl Traced {
             Self::Moving(shape) => counts.n_triangles += shape.n_primitives() as usize,
             Self::Curves(shape) => counts.n_curves += shape.n_curves(),
             Self::Cloud(shape) => counts.n_points += shape.n_primitives() as usize,
+            Self::Implicit(_) => counts.n_quadrics += 1,
         }
     }
 }

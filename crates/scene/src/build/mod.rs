@@ -6,6 +6,7 @@
 mod accelerator;
 mod camera;
 mod curves;
+mod expressions;
 mod film;
 mod formulas;
 mod heights;

@@ -9,6 +9,7 @@ use crate::scene::ShapeAttributes;
 use crate::texture::{FloatTexture, MeshAttributes};
 
 use super::curves::{CURVE, belong_together, read_curves};
+use super::expressions;
 use super::formulas;
 use super::heights::{
     DISPLACEMENT, EDGE_LENGTH, FRACTAL, HEIGHT_FIELD, read_displacement, read_fractal, read_height_field,
@@ -32,6 +33,8 @@ pub const SHAPES: &[(&str, &[ParameterSpec])] = &[
     ("hyperboloid", formulas::HYPERBOLOID),
     ("torus", formulas::TORUS),
     ("plane", formulas::PLANE),
+    ("implicit", expressions::IMPLICIT),
+    ("parametric", expressions::PARAMETRIC),
     ("trianglemesh", TRIANGLE_MESH),
     ("plymesh", PLY_MESH),
     ("bilinearmesh", BILINEAR_MESH),
@@ -238,7 +241,10 @@ impl Builder<'_, '_> {
         } else if entity.world_from_object.is_animated() {
             ("a moving shape cannot be a light", "make it stand still")
         } else if !can_emit {
-            ("meshes that deform, curves and points cannot be lights", "give the light to another shape")
+            (
+                "implicit surfaces, meshes that deform, curves and points cannot be lights",
+                "give the light to another shape; a \"parametric\" surface can have one",
+            )
         } else if self.materials.is_interface(material) {
             (
                 "the boundary of a medium cannot be a light",
@@ -283,6 +289,8 @@ fn read_shapes(
         "hyperboloid" => vec![formulas::read_hyperboloid(p)],
         "torus" => vec![formulas::read_torus(p)],
         "plane" => vec![formulas::read_plane(p)],
+        "implicit" => expressions::read_implicit(p).into_iter().collect(),
+        "parametric" => expressions::read_parametric(p).into_iter().collect(),
         "trianglemesh" => read_triangle_mesh(p).map(Shape::Triangles).into_iter().collect(),
         "plymesh" => read_ply_mesh(p, meshes, attributes),
         "bilinearmesh" => read_bilinear_mesh(p).map(Shape::Bilinear).into_iter().collect(),

@@ -1,6 +1,7 @@
 //! Documents made in code become scenes, and what is wrong with them is reported where it stands.
 
 mod curves;
+mod expressions;
 mod heights;
 mod lights;
 mod materials;

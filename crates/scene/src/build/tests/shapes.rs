@@ -76,6 +76,13 @@ fn tables_list_what_is_asked_for() {
                 (_, "point3") => points(&[[0.5, 0.0, 0.0]]),
                 (_, "vector3") => Value::Vectors3(vec![Vector3::new(1.0, 0.0, 0.0)]),
                 ("zmax" | "thetamax", _) => floats(&[0.75]),
+                ("bounds", _) => points(&[[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]]),
+                ("function", _) => strings(&["x + y^2 - radius"]),
+                ("x", "string") => strings(&["u*tolerance"]),
+                ("y" | "z", "string") => strings(&["u + v"]),
+                ("urange" | "vrange", _) => floats(&[0.0, 1.0]),
+                ("maxtriangles", _) => integers(&[1000]),
+                (_, "bool") => Value::Bools(vec![true]),
                 (_, "integer") => integers(&[1]),
                 _ => floats(&[0.5]),
             };
