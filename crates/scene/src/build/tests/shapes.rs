@@ -67,6 +67,7 @@ fn tables_list_what_is_asked_for() {
                 ("neighbors", _) => integers(&[5]),
                 ("filename" | "profile", _) if *name == "revolution" => continue,
                 ("contour", _) => Value::Points2(vec![Point2::new(0.0, 0.0), Point2::new(1.0, 1.0)]),
+                ("y" | "z", "string") => strings(&["u + v"]),
                 ("z", _) => floats(&[0.0; 4]),
                 ("nu" | "nv", _) => integers(&[2]),
                 ("encoding", _) => strings(&["linear"]),
@@ -79,10 +80,8 @@ fn tables_list_what_is_asked_for() {
                 ("bounds", _) => points(&[[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]]),
                 ("function", _) => strings(&["x + y^2 - radius"]),
                 ("x", "string") => strings(&["u*tolerance"]),
-                ("y" | "z", "string") => strings(&["u + v"]),
                 ("urange" | "vrange", _) => floats(&[0.0, 1.0]),
                 ("maxtriangles", _) => integers(&[1000]),
-                (_, "bool") => Value::Bools(vec![true]),
                 (_, "integer") => integers(&[1]),
                 _ => floats(&[0.5]),
             };
