@@ -1,7 +1,7 @@
 //! `etendue info`: what a scene holds.
 
 use etendue::math::Vector3;
-use etendue::scene::light::Light;
+use etendue::scene::light::{Light, LightMeasure, LightPower};
 use etendue::scene::{Scene, Severity};
 use etendue::transport::lpe::PathExpressions;
 use etendue::transport::method_name;
@@ -60,6 +60,7 @@ fn describe(loaded: &LoadedScene) -> Value {
         },
         "materials": scene.materials.len(),
         "lights": lights(scene),
+        "total_light": total_power(scene),
         "film": {
             "resolution": scene.film.resolution,
             "filename": scene.film.filename,
@@ -74,28 +75,69 @@ fn describe(loaded: &LoadedScene) -> Value {
     })
 }
 
-/// Lights by kind; the primitives of emissive shapes count as one kind together.
+/// Lights of one kind; the primitives of emissive shapes count as one kind together.
+struct KindOfLight {
+    name: &'static str,
+    count: usize,
+    power: LightPower,
+    /// Least and greatest of what they are known by.
+    measures: Option<[LightMeasure; 2]>,
+}
+
+/// Lights by kind with their flux and what they are known by: intensity, irradiance or radiance.
 fn lights(scene: &Scene) -> Value {
     let context = scene.light_context();
-    let mut kinds: Vec<(&str, usize, f64, f64)> = Vec::new();
+    let mut kinds: Vec<KindOfLight> = Vec::new();
     for light in &scene.lights {
-        let name = kind_name(light);
-        let power = light.power(&context);
-        match kinds.iter_mut().find(|(known, ..)| *known == name) {
-            Some((_, count, watts, lumens)) => {
-                *count += 1;
-                *watts += power.watts;
-                *lumens += power.lumens;
+        let (name, power, measure) = (kind_name(light), light.power(&context), light.measure(&context));
+        let Some(kind) = kinds.iter_mut().find(|kind| kind.name == name) else {
+            kinds.push(KindOfLight { name, count: 1, power, measures: measure.map(|m| [m, m]) });
+            continue;
+        };
+        kind.count += 1;
+        kind.power = kind.power + power;
+        if let (Some([least, most]), Some(measure)) = (&mut kind.measures, measure) {
+            if measure.value.lumens < least.value.lumens {
+                *least = measure;
             }
-            None => kinds.push((name, 1, power.watts, power.lumens)),
+            if measure.value.lumens > most.value.lumens {
+                *most = measure;
+            }
         }
     }
-    kinds
-        .into_iter()
-        .map(|(name, count, watts, lumens)| {
-            json!({"kind": name, "count": count, "power_w": watts, "flux_lm": lumens})
-        })
-        .collect()
+    kinds.iter().map(KindOfLight::to_json).collect()
+}
+
+impl KindOfLight {
+    fn to_json(&self) -> Value {
+        let mut json = json!({
+            "kind": self.name,
+            "count": self.count,
+            "power_w": self.power.watts,
+            "flux_lm": self.power.lumens,
+        });
+        if let Some([least, most]) = &self.measures {
+            let range = |a: f64, b: f64| if a == b { json!(a) } else { json!([a, b]) };
+            let [radiant, luminous] = least.units;
+            json["measure"] = json!({
+                "name": least.name,
+                radiant: range(least.value.watts, most.value.watts),
+                luminous: range(least.value.lumens, most.value.lumens),
+            });
+        }
+        json
+    }
+}
+
+/// Flux of all lamps, and of all surroundings through the sphere around the scene.
+fn total_power(scene: &Scene) -> Value {
+    let context = scene.light_context();
+    let total = |is_infinite: bool| {
+        let lights = scene.lights.iter().filter(|light| light.is_infinite() == is_infinite);
+        let power = lights.fold(LightPower::default(), |sum, light| sum + light.power(&context));
+        json!({"power_w": power.watts, "flux_lm": power.lumens})
+    };
+    json!({"lamps": total(false), "surroundings": total(true)})
 }
 
 const fn kind_name(light: &Light) -> &'static str {

@@ -5,6 +5,7 @@ use std::io::Write;
 use etendue::lab::generate::GENERATORS;
 use etendue::scene::build::{ACCELERATORS, FILMS, SAMPLERS, SHAPES};
 use etendue::scene::camera::CAMERAS;
+use etendue::scene::controls::{LIGHT_CONTROLS, SHAPE_CONTROLS};
 use etendue::scene::filter::FILTERS;
 use etendue::scene::light::LightKind;
 use etendue::scene::material::MATERIALS;
@@ -93,9 +94,15 @@ fn items(kind: ListKind) -> Vec<Item> {
             items
         }
         ListKind::Lights => {
-            LightKind::ALL.iter().map(|kind| Item::new(kind.name(), kind.doc(), kind.parameters())).collect()
+            let kinds =
+                LightKind::ALL.iter().map(|kind| Item::new(kind.name(), kind.doc(), kind.parameters()));
+            kinds.chain([Item::new("every light", "", LIGHT_CONTROLS)]).collect()
         }
-        ListKind::Shapes => tabled(SHAPES),
+        ListKind::Shapes => {
+            let mut items = tabled(SHAPES);
+            items.push(Item::new("every shape", "", SHAPE_CONTROLS));
+            items
+        }
         ListKind::Media => Vec::new(),
         ListKind::Cameras => tabled(CAMERAS),
         ListKind::Films => tabled(FILMS),

@@ -13,6 +13,7 @@ pub mod bsdf;
 pub mod material;
 pub mod medium;
 
+pub mod controls;
 pub mod light;
 
 pub mod camera;

@@ -6,6 +6,7 @@ use etendue_spectrum::{Sampled, Wavelengths};
 
 use crate::bsdf::{Bsdf, BsdfKind, Diffuse};
 use crate::camera::Camera;
+use crate::controls::Controls;
 use crate::document::Entity;
 use crate::film::FilmSettings;
 use crate::filter::Filter;
@@ -122,6 +123,8 @@ pub struct Scene {
     pub sampler: SamplerSettings,
     /// The method that the document asks for, with its parameters.
     pub integrator: Entity,
+    /// What artists have switched off; `None` for nothing.
+    pub controls: Option<Box<Controls>>,
     /// True if some shape has an alpha texture.
     pub has_alpha: bool,
     /// True if light passes some shapes: by alpha, or because they are interfaces.

@@ -7,6 +7,7 @@
 //!
 //! SPEC: PT-1 to PT-5, EQ-1, EQ-7, MC-11, MC-12, MC-15.
 
+pub(crate) mod artist;
 mod reuse;
 mod settings;
 mod walk;
@@ -54,13 +55,15 @@ impl Integrator for PathTracer {
 
     fn run_pass(&mut self, scene: &Scene, pass: u64, film: &mut Film, control: &Control<'_>) -> PassEnd {
         let settings = &self.settings;
+        // What is switched off depends on the way from the camera, so that paths cannot be shared.
+        let group_size = if scene.controls.is_some() { 1 } else { settings.reuse };
         let camera_pass = CameraPass {
             wavelengths: settings.wavelengths,
             expressions: &self.expressions,
-            group_size: settings.reuse,
+            group_size,
             adaptive: settings.adaptive,
         };
-        if settings.reuse > 1 {
+        if group_size > 1 {
             camera_pass.run(scene, pass, film, control, &mut self.tiles, &Reuse { settings })
         } else {
             camera_pass.run(scene, pass, film, control, &mut self.tiles, &Alone { settings })

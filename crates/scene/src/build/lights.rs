@@ -25,7 +25,9 @@ impl Builder<'_, '_> {
             LightTables { scene_sphere: SceneSphere::around(geometry.bounds()), ..LightTables::default() };
         let mut lights = Vec::new();
         for entity in &self.document.lights {
-            lights.extend(tables.build_light(entity, &mut self.context));
+            let built = tables.build_light(entity, &mut self.context);
+            self.controls.add_lights(&entity.entity, built.len());
+            lights.extend(built);
         }
         for emitter in std::mem::take(&mut self.emitters) {
             self.add_area_lights(emitter, geometry, &mut tables, &mut lights);
@@ -61,12 +63,14 @@ impl Builder<'_, '_> {
         if let Some(light) = AreaLight::joined(geometry, id, emission, tables) {
             attributes.lights = Some(ShapeLights::whole(next));
             lights.push(Light::Area(light));
+            self.controls.add_lights(entity, 1);
             return;
         }
         attributes.lights = Some(ShapeLights::each(next));
         let primitives =
             primitives.map(|primitive| AreaLight::new(geometry, id, primitive, emission, tables));
         lights.extend(primitives.map(Light::Area));
+        self.controls.add_lights(entity, lights.len() - next.0 as usize);
     }
 
     /// The choice belongs to the integrator's parameters, but is prepared with the scene.

@@ -6,6 +6,7 @@
 mod accelerator;
 mod camera;
 mod curves;
+mod emitters;
 mod expressions;
 mod film;
 mod formulas;
@@ -25,6 +26,7 @@ use std::collections::HashMap;
 use etendue_geometry::{GeometryBuilder, ObjectId};
 
 use crate::assets::Assets;
+use crate::controls::ControlsBuilder;
 use crate::diagnostics::Diagnostics;
 use crate::document::{Document, Entity, InstanceEntity};
 use crate::material::{MaterialId, Materials};
@@ -51,6 +53,7 @@ struct Builder<'d, 'a> {
     named_materials: HashMap<String, MaterialId>,
     attributes: Vec<ShapeAttributes>,
     emitters: Vec<Emitter>,
+    controls: ControlsBuilder,
 }
 
 impl Scene {
@@ -59,6 +62,8 @@ impl Scene {
     /// There is a scene unless a diagnostic is an error.
     #[must_use]
     pub fn build(document: &Document, mut assets: Assets) -> (Option<Self>, Diagnostics) {
+        let document = emitters::place_emitters(document, &assets);
+        let document = document.as_ref();
         let loaded = std::mem::take(&mut assets.meshes);
         let mut builder = Builder {
             document,
@@ -69,7 +74,10 @@ impl Scene {
             named_materials: HashMap::new(),
             attributes: Vec::new(),
             emitters: Vec::new(),
+            controls: ControlsBuilder::default(),
         };
+        let lights = document.lights.iter().map(|light| &light.entity).chain(&document.area_lights);
+        builder.controls = ControlsBuilder::new(lights, &mut builder.context.diagnostics);
         builder.build_textures();
         builder.warn_of_media();
         builder.build_materials();
@@ -88,7 +96,7 @@ impl Scene {
         if is_dark && !builder.context.diagnostics.has_errors() {
             builder.context.diagnostics.warning(None, "the scene has no lights; the image will be black");
         }
-        let Builder { mut context, mut textures, materials, attributes, .. } = builder;
+        let Builder { mut context, mut textures, materials, attributes, controls, .. } = builder;
         textures.spectra = context.spectra;
         context.diagnostics.remove_repetitions();
         if context.diagnostics.has_errors() {
@@ -110,6 +118,7 @@ impl Scene {
             filter,
             sampler,
             integrator: document.integrator.clone().unwrap_or_else(|| Entity::new("volpath")),
+            controls: controls.finish(),
             has_alpha,
             has_passable,
         };

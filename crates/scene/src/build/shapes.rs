@@ -2,6 +2,7 @@
 
 use etendue_geometry::{CurveSet, GeometryBuilder, GeometryId, ObjectId, Shape};
 
+use crate::controls::SHAPE_CONTROLS;
 use crate::document::{Document, MaterialReference, ShapeEntity, Value};
 use crate::material::MaterialId;
 use crate::parameters::{ParameterSpec, Parameters, spec};
@@ -170,6 +171,7 @@ impl Builder<'_, '_> {
         let mut p = Parameters::new(&entity.entity, &mut self.context);
         let alpha = p.float_texture_opt("alpha").filter(|alpha| *alpha != FloatTexture::Constant(1.0));
         meshes.attributes.clear();
+        SHAPE_CONTROLS.iter().for_each(|control| p.ignore(control.name));
         let mut shapes = read_shapes(&mut p, meshes, &self.textures.mesh_attributes);
         if matches!(entity.entity.type_name.as_str(), "trianglemesh" | "plymesh") {
             let place = &entity.world_from_object;
@@ -207,6 +209,8 @@ impl Builder<'_, '_> {
         if !meshes.attributes.is_empty() {
             self.textures.mesh_attributes.attach(id.0, meshes.attributes.remove(0));
         }
+        let controls = self.controls.read(&mut Parameters::new(&entity.entity, &mut self.context));
+        self.controls.add_shape(controls);
         self.attributes.push(ShapeAttributes { material, alpha, lights: None });
         if let Some(area_light) = emits {
             self.emitters.push(Emitter { geometry: id, area_light });

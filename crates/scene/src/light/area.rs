@@ -280,6 +280,12 @@ impl AreaLight {
         Some((sample, pdf_w))
     }
 
+    /// Radiance along the normal, the mean over the shape.
+    #[must_use]
+    pub fn mean_radiance(&self, context: &LightContext) -> LightPower {
+        self.emission(context).mean
+    }
+
     /// False if no ray meets its surface.
     #[must_use]
     pub const fn is_visible(&self) -> bool {

@@ -142,6 +142,7 @@ impl LightTables {
             LightKind::Sky | LightKind::Sun | LightKind::SunSky => self.build_sky(kind, &mut p, transform),
             _ => self.build_single(kind, &mut p, transform).into_iter().collect(),
         };
+        p.ignore("group");
         p.finish();
         lights
     }
@@ -216,6 +217,7 @@ impl LightTables {
         find_kind(entity, "area light", [LightKind::Diffuse].into_iter(), context)?;
         let mut p = Parameters::new(entity, context);
         let emission = AreaEmission::build(&mut p, area_m2, self);
+        p.ignore("group");
         p.finish();
         self.emissions.push(emission?.with_alpha(alpha));
         Some(AreaEmissionId(self.emissions.len() as u32 - 1))

@@ -47,6 +47,8 @@ mod bounds;
 mod sampler;
 mod tree;
 
+mod measure;
+
 mod build;
 
 pub use area::{AreaEmission, AreaEmissionId, AreaLight};
@@ -61,6 +63,7 @@ pub use image::{LightImage, LightImageId};
 pub use infinite_constant::InfiniteConstantLight;
 pub use infinite_image::{InfiniteImageLight, InfiniteImageLightId};
 pub use infinite_portal::{InfinitePortalLight, InfinitePortalLightId, PortalError};
+pub use measure::LightMeasure;
 pub use photometry::{PhotometricWeb, Photometry};
 pub use point::PointLight;
 pub use profile::{Profile, sample_by_rejection};

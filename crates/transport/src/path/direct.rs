@@ -12,6 +12,7 @@ use etendue_spectrum::{Sampled, Wavelengths};
 
 use super::camera_pass::Tracer;
 use super::mis::power_heuristic;
+use crate::path_tracing::artist::is_kept_from;
 
 /// A light as a surface sees it, before the surface scatters it.
 #[derive(Clone, Copy, Debug)]
@@ -95,6 +96,9 @@ fn sample_light(
 ) -> Option<DirectLight> {
     let reference = surface.reference();
     let (light, pmf) = scene.light_sampler.sample(group, &reference, u_light)?;
+    if is_kept_from(scene, light, surface.hit.geometry) {
+        return None;
+    }
     let sample = scene.light(light).sample_li(&scene.light_context(), &reference, u, lambda)?;
     let pdf_w = pmf * sample.pdf_w;
     (pdf_w > 0.0 && !sample.le.is_black()).then_some(DirectLight { sample, pdf_w })

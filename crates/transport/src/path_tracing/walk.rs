@@ -9,6 +9,7 @@ use etendue_scene::medium::MediumId;
 use etendue_scene::scene::Surface;
 use etendue_spectrum::Sampled;
 
+use super::artist::Artist;
 use super::{LightStrategy, PathSettings};
 use crate::lpe::{Event, LayerRecorder};
 use crate::path::camera_pass::{CameraPath, Tracer};
@@ -42,6 +43,8 @@ pub(super) struct Walk<'s> {
     pub(super) has_scattered_widely: bool,
     /// What the ray travels through.
     pub(super) medium: Option<MediumId>,
+    /// What is switched off on the way; of no use where nothing is.
+    artist: Artist,
     pub(super) radiance: Sampled,
 }
 
@@ -57,6 +60,7 @@ impl<'s> Walk<'s> {
             last: None,
             has_scattered_widely: false,
             medium: None,
+            artist: Artist::default(),
             radiance: Sampled::ZERO,
         }
     }
@@ -284,6 +288,9 @@ impl<'s> Walk<'s> {
     fn add_surroundings(&mut self, scene: &Scene, path: &mut CameraPath<'_, '_>) {
         let context = scene.light_context();
         for &id in &scene.infinite_lights {
+            if self.is_switched_off(scene, id) {
+                continue;
+            }
             let light = scene.light(id);
             let le = light.le_infinite(&context, self.ray.origin, self.ray.direction, path.lambda);
             if le.is_black() {
@@ -296,7 +303,7 @@ impl<'s> Walk<'s> {
     }
 
     fn add_emission(&mut self, scene: &Scene, surface: &Surface, path: &mut CameraPath<'_, '_>) {
-        let Some(id) = surface.light else { return };
+        let Some(id) = surface.light.filter(|id| !self.is_switched_off(scene, *id)) else { return };
         let le = scene.emitted(surface, path.lambda);
         if le.is_black() {
             return;
@@ -307,6 +314,12 @@ impl<'s> Walk<'s> {
             light.pdf_li_at(&context, reference, self.ray.direction, surface.point.p, surface.point.ng)
         });
         self.add(self.beta * le * weight, path.layers);
+    }
+
+    /// True if light that the path runs into is switched off.
+    #[inline]
+    fn is_switched_off(&self, scene: &Scene, light: LightId) -> bool {
+        scene.controls.as_ref().is_some_and(|controls| !self.artist.admits(controls, light))
     }
 
     fn add(&mut self, contribution: Sampled, layers: &mut LayerRecorder<'_>) {
@@ -359,15 +372,19 @@ impl<'s> Walk<'s> {
             return;
         };
         let Candidate { light, weighted, unoccluded, .. } = candidate;
-        self.radiance += through * unoccluded;
+        let admitted = tracer.scene.controls.as_ref().map_or(Lobes::ALL, |controls| {
+            self.artist.lobes(controls, surface.hit.geometry, bsdf, self.settings.sharp_alpha)
+        });
+        let through_lobes = |lobes: Lobes| {
+            let wi = light.sample.wi;
+            let f = bsdf.eval(surface.wo, wi, TransportMode::Radiance, lobes & admitted) * bsdf.abs_cos(wi);
+            through * (f * weighted)
+        };
+        self.radiance +=
+            if admitted == Lobes::ALL { through * unoccluded } else { through_lobes(Lobes::ALL) };
         if path.layers.is_idle() {
             return;
         }
-        let through_lobes = |lobes: Lobes| {
-            let wi = light.sample.wi;
-            let f = bsdf.eval(surface.wo, wi, TransportMode::Radiance, lobes) * bsdf.abs_cos(wi);
-            through * (f * weighted)
-        };
         let (glossy, diffuse) = (through_lobes(Lobes::GLOSSY), through_lobes(Lobes::DIFFUSE));
         path.layers.emit_through(Event::glossy(bsdf.glossy_roughness(), self.settings.sharp_alpha), glossy);
         path.layers.emit_through(Event::Diffuse, diffuse);
@@ -391,8 +408,14 @@ impl<'s> Walk<'s> {
         let pdf_w = (!sample.is_specular()).then_some(sample.pdf_w * walks_per_light_sample);
         self.has_scattered_widely |= pdf_w.is_some();
         self.last = Some(LastScattering { reference: surface.reference(), pdf_w });
+        let event = event_of(sample, self.settings.sharp_alpha);
+        if let Some(controls) = &scene.controls
+            && !self.artist.scatter(controls, surface.hit.geometry, event)
+        {
+            self.beta = Sampled::ZERO;
+        }
         if !layers.is_idle() {
-            layers.scatter(event_of(sample, self.settings.sharp_alpha));
+            layers.scatter(event);
         }
     }
 

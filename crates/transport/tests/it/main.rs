@@ -9,6 +9,7 @@ mod adaptive;
 mod ambient_occlusion;
 mod bands;
 mod branching;
+mod controls;
 mod convergence;
 mod degenerate;
 mod determinism;

@@ -55,7 +55,7 @@ fn each_primitive_is_a_light() {
     }
 }
 
-/// Shapes of objects, moving shapes and boundaries of media are no lights, as in pbrt-v4. They stay visible.
+/// Shapes of moving instances, moving shapes and boundaries of media are no lights, as in pbrt-v4. They stay visible.
 #[test]
 fn some_shapes_cannot_be_lights() {
     let emitter = ShapeEntity { area_light: Some(0), ..shape(here(Entity::new("sphere"))) };
@@ -63,7 +63,7 @@ fn some_shapes_cannot_be_lights() {
 
     let mut object = document();
     object.objects.push(ObjectEntity { name: "o".to_owned(), span: None, shapes: vec![emitter.clone()] });
-    let world_from_instance = still(Transform::IDENTITY);
+    let world_from_instance = moving();
     object.instances.push(InstanceEntity { object: "o".to_owned(), span: None, world_from_instance });
     let moving = ShapeEntity { world_from_object: moving(), ..emitter.clone() };
     let mut interface = document();
@@ -80,6 +80,27 @@ fn some_shapes_cannot_be_lights() {
         assert_eq!(scene.lights.len(), 1);
         assert!(scene.attributes[0].lights.is_none() && below(&scene, 0.5, 0.0).is_some());
     }
+}
+
+/// An emissive shape of an object is a light for each instance, in its place.
+#[test]
+fn emissive_shapes_of_instances_are_lights() {
+    let emitter = ShapeEntity { area_light: Some(0), ..shape(here(Entity::new("sphere"))) };
+    let mut document = Document { area_lights: vec![lamp()], ..lit() };
+    document.lights.clear();
+    let shapes = vec![emitter, sphere()];
+    document.objects.push(ObjectEntity { name: "o".to_owned(), span: None, shapes });
+    for x in [-5.0, 5.0, 50.0] {
+        let world_from_instance = still(Transform::translate(Vector3::new(x, 0.0, 0.0)));
+        document.instances.push(InstanceEntity { object: "o".to_owned(), span: None, world_from_instance });
+    }
+    let (scene, problems) = build(&document);
+    assert!(problems.is_empty(), "{problems:?}");
+    let scene = scene.expect("no problem was reported");
+    let context = scene.light_context();
+    let places: Vec<f32> =
+        scene.lights.iter().filter_map(|light| light.bounds(&context)).map(|b| b.centroid().x).collect();
+    assert_eq!(places, [-5.0, 5.0, 50.0]);
 }
 
 /// A scene without light is black, which is seldom meant.
