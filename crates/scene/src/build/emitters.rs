@@ -10,6 +10,9 @@ use crate::document::{Document, ShapeEntity, Value};
 /// The most primitives that copies may have together: a light of each is about 200 bytes.
 const MAX_PRIMITIVES: usize = 4_000_000;
 
+/// What a shape counts whose primitives are not known yet.
+const MANY: usize = 100_000;
+
 /// The document with the emissive shapes of its objects in their places in the world. Instances or shapes that move, and
 /// copies beyond four million primitives, leave it as it is; then such shapes stay dark, and a warning says so where they
 /// are added.
@@ -60,9 +63,11 @@ fn count_primitives(shape: &ShapeEntity, assets: &Assets) -> usize {
         Some(Value::Integers(indices)) => indices.len() / 3 + 1,
         _ => 1,
     };
-    let levels = match parameter("levels") {
-        Some(Value::Integers(levels)) => levels.first().copied().unwrap_or(3).clamp(0, 10) as u32,
-        _ => 3,
-    };
-    if shape.entity.type_name == "loopsubdiv" { n_faces << (2 * levels) } else { n_faces }
+    match shape.entity.type_name.as_str() {
+        _ if parameter("displacement").is_some() => MANY,
+        "trianglemesh" | "plymesh" | "bilinearmesh" => n_faces,
+        "sphere" | "disk" | "cylinder" | "cone" | "paraboloid" | "hyperboloid" | "torus" | "plane" => 1,
+        // Shapes that are made of triangles when they are built.
+        _ => n_faces.saturating_mul(MANY),
+    }
 }

@@ -29,6 +29,7 @@ mod context;
 pub mod emission;
 mod image;
 mod photometry;
+mod photons;
 mod profile;
 
 mod area;
@@ -65,6 +66,7 @@ pub use infinite_image::{InfiniteImageLight, InfiniteImageLightId};
 pub use infinite_portal::{InfinitePortalLight, InfinitePortalLightId, PortalError};
 pub use measure::LightMeasure;
 pub use photometry::{PhotometricWeb, Photometry};
+pub use photons::{sample_sphere_by_rejection, share_photons};
 pub use point::PointLight;
 pub use profile::{Profile, sample_by_rejection};
 pub use projection::{ProjectionLight, ProjectionLightId};

@@ -4,6 +4,7 @@ use etendue_geometry::Reference;
 use etendue_math::Ray;
 use etendue_scene::Scene;
 use etendue_scene::bsdf::{Bsdf, BsdfSample, Lobes, TransportMode};
+use etendue_scene::controls::Controls;
 use etendue_scene::light::LightId;
 use etendue_scene::medium::MediumId;
 use etendue_scene::scene::Surface;
@@ -408,14 +409,20 @@ impl<'s> Walk<'s> {
         let pdf_w = (!sample.is_specular()).then_some(sample.pdf_w * walks_per_light_sample);
         self.has_scattered_widely |= pdf_w.is_some();
         self.last = Some(LastScattering { reference: surface.reference(), pdf_w });
-        let event = event_of(sample, self.settings.sharp_alpha);
-        if let Some(controls) = &scene.controls
-            && !self.artist.scatter(controls, surface.hit.geometry, event)
-        {
-            self.beta = Sampled::ZERO;
+        if let Some(controls) = &scene.controls {
+            self.obey(controls, surface, sample);
         }
         if !layers.is_idle() {
-            layers.scatter(event);
+            layers.scatter(event_of(sample, self.settings.sharp_alpha));
+        }
+    }
+
+    /// Ends the path where all that it may find is switched off: roulette does, for want of throughput.
+    #[cold]
+    fn obey(&mut self, controls: &Controls, surface: &Surface, sample: &BsdfSample) {
+        let event = event_of(sample, self.settings.sharp_alpha);
+        if !self.artist.scatter(controls, surface.hit.geometry, event) {
+            self.beta = Sampled::ZERO;
         }
     }
 

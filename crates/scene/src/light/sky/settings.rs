@@ -196,10 +196,11 @@ fn within(p: &mut Parameters, name: &'static str, default: f32, least: f32, most
 /// A factor of at least 0.
 fn factor(p: &mut Parameters, name: &'static str) -> f32 {
     let value = p.float(name, 1.0);
-    if value >= 0.0 && value.is_finite() {
+    // Radiance of the sun's disc is 1e10 cd/m^2, and numbers end at 3e38.
+    if (0.0..=1e20).contains(&value) {
         return value;
     }
     let span = p.span_of(name);
-    p.diagnostics().error(span, format!("\"{name}\" must be at least 0, not {value}"));
+    p.diagnostics().error(span, format!("\"{name}\" must be at least 0 and at most 1e20, not {value}"));
     1.0
 }
