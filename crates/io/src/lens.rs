@@ -74,7 +74,7 @@ pub fn read_lens(bytes: &[u8]) -> Result<LensPrescription, LensError> {
 }
 
 fn excerpt(word: &str) -> String {
-    word.chars().take(20).collect()
+    word.chars().take(20).flat_map(char::escape_debug).collect()
 }
 
 #[cfg(test)]

@@ -31,6 +31,9 @@ const SPECTRAL: &[ParameterSpec] = &[
     spec("lambdamax", "float", "830", "nm", "upper end of the bands"),
 ];
 
+/// Largest diagonal of a film: a kilometre.
+const MOST_DIAGONAL_MM: f32 = 1e6;
+
 /// Film types with their own parameters; `gbuffer` and `spectral` take those of `rgb` too.
 pub const FILMS: &[(&str, &[ParameterSpec])] = &[("rgb", RGB), ("gbuffer", GBUFFER), ("spectral", SPECTRAL)];
 
@@ -68,7 +71,14 @@ pub(super) fn build_film(document: &Document, context: &mut BuildContext<'_>) ->
     let sensor = read_sensor(&mut p, document);
     let max_component = p.float("maxcomponentvalue", f32::INFINITY);
     let filename = p.string("filename", "pbrt.exr");
-    let diagonal_mm = p.float("diagonal", 35.0);
+    let mut diagonal_mm = p.float("diagonal", 35.0);
+    if !(diagonal_mm > 0.0 && diagonal_mm < MOST_DIAGONAL_MM) {
+        let span = p.span_of("diagonal");
+        let message =
+            format!("\"diagonal\" must be positive and below {MOST_DIAGONAL_MM} mm, not {diagonal_mm}");
+        p.diagnostics().error(span, message);
+        diagonal_mm = 35.0;
+    }
     p.ignore("savefp16");
     p.finish();
     FilmSettings {

@@ -81,6 +81,12 @@ impl Realistic {
         Some(Self { resolution, film_size_m, barrel, pupils, weight })
     }
 
+    /// True if some light gets from the scene to some point of the film.
+    #[must_use]
+    pub fn is_open(&self) -> bool {
+        self.pupils.is_open()
+    }
+
     /// Width and height of the film in metres.
     #[must_use]
     pub const fn film_size_m(&self) -> [f32; 2] {

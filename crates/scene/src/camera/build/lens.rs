@@ -41,6 +41,9 @@ pub(super) const BLADE_ROTATION: ParameterSpec = spec(
     "turns the polygon, whose first corner is to the right, counterclockwise as the camera looks",
 );
 
+/// Largest radius of an aperture in metres: beyond, squares of densities leave single precision.
+const MOST_RADIUS: f32 = 1e6;
+
 /// Most corners of an aperture: more look like a disc.
 const MOST_BLADES: u32 = 100;
 
@@ -60,7 +63,13 @@ pub(super) fn read_perspective(p: &mut Parameters<'_, '_>, screen: Screen) -> Pe
             p.diagnostics().error(span, message).with_help("remove one of them");
         }
         let given = Photographic { focal_length_m: focal_length_mm / 1000.0, ..lens };
-        if given.focal_length_m < focal_distance {
+        let view = given.tan_half_width();
+        if given.focal_length_m < focal_distance && !(1e-6..1e6).contains(&view) {
+            let span = p.span_of("focallength");
+            let degrees = 2.0 * view.atan().to_degrees();
+            let message = format!("a focal length of {focal_length_mm} mm makes a view of {degrees} degrees");
+            p.diagnostics().error(span, message);
+        } else if given.focal_length_m < focal_distance {
             lens = given;
             tan_half_fov = lens.tan_half_width() / half_width;
         } else {
@@ -110,16 +119,23 @@ fn read_radius(p: &mut Parameters<'_, '_>, lens: &Photographic) -> f32 {
         let message = "\"lensradius\" and \"fstop\" both say how wide the aperture is";
         p.diagnostics().error(span, message).with_help("remove one of them");
     }
-    lens.lens(f_number).radius
+    let by_number = lens.lens(f_number).radius;
+    if by_number <= MOST_RADIUS {
+        return by_number;
+    }
+    let span = p.span_of("fstop");
+    p.diagnostics().error(span, format!("\"fstop\" {f_number} makes an aperture of {by_number} m"));
+    radius
 }
 
 fn read_lens_radius(p: &mut Parameters<'_, '_>) -> f32 {
     let radius = p.float("lensradius", 0.0);
-    if radius >= 0.0 && radius.is_finite() {
+    if (0.0..=MOST_RADIUS).contains(&radius) {
         return radius;
     }
     let span = p.span_of("lensradius");
-    p.diagnostics().error(span, format!("\"lensradius\" must not be negative, but is {radius}"));
+    let message = format!("\"lensradius\" must be between 0 and {MOST_RADIUS} m, but is {radius}");
+    p.diagnostics().error(span, message);
     0.0
 }
 

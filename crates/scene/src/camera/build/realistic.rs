@@ -62,6 +62,11 @@ pub(super) fn read_realistic(
         limit_stop(p, &lens, wanted_m, if f_number.is_some() { "fstop" } else { "aperturediameter" });
     let settings = LensSettings { stop_diameter_m, stop_shape, focus_distance, is_normalized };
     let camera = Realistic::new(&lens, settings, resolution, diagonal_m);
+    if camera.as_ref().is_some_and(|camera| !camera.is_open()) {
+        let span = p.span_of("lensfile");
+        let message = "no light gets through this lens and its stop to the film, which will be black";
+        p.diagnostics().warning(span, message);
+    }
     if camera.is_none() {
         let span = p.span_of("focusdistance");
         let message = format!(

@@ -44,6 +44,11 @@ impl ExitPupils {
         Self { bounds, max_distance }
     }
 
+    /// True if some light gets through.
+    pub(super) fn is_open(&self) -> bool {
+        self.bounds.iter().any(Option::is_some)
+    }
+
     /// A uniformly distributed point of the bounds for a film point, and their area in square metres.
     pub(super) fn sample(&self, film: Point3, rear_z: f32, u: Point2) -> Option<(Point3, f32)> {
         let r = film.x.hypot(film.y);

@@ -60,6 +60,9 @@ fn impossible_lenses_are_reported() {
     assert_eq!(problems(&[("lensradius", 0.1), ("fstop", 2.0)]), 1);
     assert_eq!(problems(&[("focallength", 50.0), ("focaldistance", 0.05)]), 1);
     assert_eq!(problems(&[("focallength", 0.0)]), 1);
+    assert_eq!(problems(&[("focallength", 1e-30)]), 1);
+    assert_eq!(problems(&[("focallength", 50.0), ("fstop", 1e-38)]), 1);
+    assert_eq!(problems(&[("lensradius", 1e30)]), 1);
     assert_eq!(problems(&[("fstop", 0.0)]), 1);
     assert_eq!(problems(&[("fstop", f32::NAN)]), 1);
     assert_eq!(problems(&[("focallength", 50.0), ("sensorwidth", -36.0)]), 1);

@@ -262,6 +262,7 @@ fn problems_of_lenses_are_reported() {
     assert_eq!(problems(&[sound.clone(), float("aperturediameter", 0.0)]), 1);
     assert_eq!(problems(&[sound.clone(), float("aperturediameter", 50.0)]), 1);
     assert_eq!(problems(&[sound.clone(), float("fstop", 0.5)]), 1);
+    assert_eq!(problems(&[sound.clone(), float("aperturediameter", 1e-30)]), 1, "no light");
     assert_eq!(problems(&[sound.clone(), float("fstop", 4.0), float("aperturediameter", 5.0)]), 1);
     let aperture = |name: &str| ("aperture", Value::Strings(vec![name.to_owned()]));
     assert_eq!(problems(&[sound.clone(), aperture("star")]), 0);
