@@ -31,6 +31,9 @@ pub enum Up {
     Guessed,
 }
 
+/// Faces of bare meshes that meet at a larger angle have an edge between them.
+pub const CREASE_DEGREES: f32 = 40.0;
+
 /// Horizontal and vertical angles of the camera's place in degrees: from the front to the right, and upwards.
 const CAMERA: [f32; 2] = [30.0, 18.0];
 /// The same of the lamp.
@@ -39,8 +42,8 @@ const LAMP: [f32; 2] = [-40.0, 50.0];
 const LAMP_DISTANCE: f32 = 20.0;
 const LAMP_RADIUS: f32 = 2.5;
 /// Illuminance by the lamp on what faces it, and luminance of the sky.
-const LAMP_ILLUMINANCE: f32 = 2.2;
-const SKY: [f32; 3] = [0.56, 0.62, 0.7];
+const LAMP_ILLUMINANCE: f32 = 2.6;
+const SKY: [f32; 3] = [0.32, 0.36, 0.42];
 /// Full angle of view across the shorter side, in degrees.
 const FOV: f32 = 35.0;
 /// The body fills this share of the view.

@@ -3,7 +3,7 @@
 //! Colours are in our units as they are: where an emitter of colour 1 gives a picture of 1, ours of 1 cd/m^2 does. Spectra
 //! are absolute there, in W/(m^2 sr nm), and [`FROM_RADIOMETRIC`] makes their pictures agree.
 
-use etendue_math::{AnimatedTransform, Point3, Transform};
+use etendue_math::{AnimatedTransform, Point3, Transform, Vector3};
 use etendue_scene::Span;
 use etendue_scene::document::{EmbeddedFile, Entity, LightEntity, MediumEntity, TextureValue, Value};
 
@@ -11,7 +11,7 @@ use super::element::Element;
 use super::environment::{equal_area_of_latitude_longitude, y_is_up};
 use super::reader::{FROM_RADIOMETRIC, Reader, entity, parameter};
 use super::textures::ConstantSpectrum;
-use super::values::{self, SpectrumValue, vector};
+use super::values::{self, SpectrumValue};
 use crate::images::read_texels;
 
 const KNOWN: &[&str] =
@@ -47,10 +47,7 @@ impl<'e> Reader<'e> {
             }
             "envmap" => self.environment(emitter),
             "projector" => self.projector(emitter),
-            "sun" | "sky" | "sunsky" => {
-                self.sun_and_sky(emitter);
-                None
-            }
+            "sun" | "sky" | "sunsky" => self.sun_and_sky(emitter),
             "area" => {
                 self.diagnostics.error(emitter.plugin_span(), "an `area` emitter belongs inside of a shape");
                 None
@@ -231,51 +228,66 @@ impl<'e> Reader<'e> {
         }
     }
 
-    /// A stand-in for the models of the sky: a white dome, and parallel light from the sun.
-    fn sun_and_sky(&mut self, emitter: &'e Element) {
-        let why =
-            "the model of the sky is not available here; a constant sky and parallel light stand in for it";
-        self.diagnostics.warning(emitter.plugin_span(), why);
-        let default = if self.is_legacy { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
-        let direction = self.triple(emitter, "sun_direction", default);
-        let to_world = self.transform(emitter, "to_world");
-        let scale = self.float(emitter, "scale", 1.0);
-        let sun = scale * self.float(emitter, "sun_scale", 1.0);
-        let sky = scale * self.float(emitter, "sky_scale", 1.0);
+    /// Our own model of the air in place of Preetham's or Hosek's. What it gives is absolute, so that only the factor of
+    /// spectra is between us.
+    fn sun_and_sky(&mut self, emitter: &'e Element) -> Option<(Entity, AnimatedTransform)> {
+        let scale = self.float(emitter, "scale", 1.0) * FROM_RADIOMETRIC;
+        let [sun, sky] = ["sun_scale", "sky_scale"].map(|name| self.float(emitter, name, 1.0));
+        let kind = match emitter.plugin() {
+            "sunsky" if sky == 0.0 => "sun",
+            "sunsky" if sun == 0.0 => "sky",
+            other => other,
+        };
+        let mut light = entity(kind, emitter);
+        let factor = scale * if kind == "sun" { sun } else { sky };
+        light = light.with("scale", Value::Floats(vec![factor]));
+        if kind == "sunsky" && sun != sky {
+            light = light.with("sunscale", Value::Floats(vec![sun / sky]));
+        }
+        self.pass_number(emitter, "turbidity", &mut light, "turbidity");
+        if let Some((Value::Floats(albedo), span)) = self.number_opt(emitter, "albedo") {
+            light.parameters.push(parameter("groundalbedo", Value::Floats(albedo), span));
+        }
+        self.sun_position(emitter, &mut light);
+        if self.is_legacy {
+            light = light.with("up", Value::Vectors3(vec![Vector3::new(0.0, 1.0, 0.0)]));
+        }
         self.accept(
             emitter,
             &[
-                "turbidity",
-                "albedo",
-                "year",
-                "month",
-                "day",
-                "hour",
-                "minute",
-                "second",
-                "latitude",
-                "longitude",
-                "timezone",
                 "stretch",
                 "resolution",
                 "sun_radius_scale",
-                "extend",
                 "sun_aperture",
                 "complex_sun",
+                "extend",
+                "samples_count",
             ],
         );
-        if emitter.plugin() != "sun" {
-            let light =
-                entity("infinite", emitter).with("L", Value::Rgb(vec![[0.2 * sky, 0.3 * sky, 0.5 * sky]]));
-            self.push_light(light, to_world);
+        Some((light, self.transform(emitter, "to_world")))
+    }
+
+    /// A direction, or place and time, whose defaults are those of Mitsuba: Tokyo, 10 July 2010, three in the afternoon.
+    fn sun_position(&mut self, emitter: &'e Element, light: &mut Entity) {
+        if Self::has(emitter, "sun_direction") {
+            let [x, y, z] = self.triple(emitter, "sun_direction", [0.0, 0.0, 1.0]);
+            *light = std::mem::take(light).with("sundirection", Value::Vectors3(vec![Vector3::new(x, y, z)]));
+            return;
         }
-        if emitter.plugin() != "sky" {
-            let d = vector(direction);
-            let light = entity("distant", emitter)
-                .with("L", Value::Rgb(vec![[3.0 * sun, 2.8 * sun, 2.4 * sun]]))
-                .with("from", Value::Points3(vec![Point3::new(d.x, d.y, d.z)]))
-                .with("to", Value::Points3(vec![Point3::default()]));
-            self.push_light(light, to_world);
+        let [year, month, day] = [("year", 2010), ("month", 7), ("day", 10)]
+            .map(|(name, default)| self.integer(emitter, name, default));
+        let [hour, minute, second] = [("hour", 15.0), ("minute", 0.0), ("second", 0.0)]
+            .map(|(name, default)| self.float(emitter, name, default));
+        let date = format!("{year:04}-{month:02}-{day:02}");
+        *light = std::mem::take(light).with("date", Value::Strings(vec![date]));
+        let numbers = [
+            ("time", hour + minute / 60.0 + second / 3600.0),
+            ("latitude", self.float(emitter, "latitude", 35.6894)),
+            ("longitude", self.float(emitter, "longitude", 139.6917)),
+            ("timezone", self.float(emitter, "timezone", 9.0)),
+        ];
+        for (name, value) in numbers {
+            *light = std::mem::take(light).with(name, Value::Floats(vec![value]));
         }
     }
 

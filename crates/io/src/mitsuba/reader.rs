@@ -20,6 +20,9 @@ pub(super) const FROM_RADIOMETRIC: f32 = (1.0 / (683.002 * 106.856_895)) as f32;
 /// Levels of plugins inside of each other, with those that references lead to.
 const MAX_DEPTH: usize = 64;
 
+/// References to nothing that get a suggestion.
+const MAX_SUGGESTED: usize = 20;
+
 /// Turns elements into a document.
 #[derive(Debug)]
 pub(super) struct Reader<'e> {
@@ -38,6 +41,8 @@ pub(super) struct Reader<'e> {
     pub(super) meshes: Vec<(String, MeshRequest)>,
     /// Versions before 2 mean other defaults.
     pub(super) is_legacy: bool,
+    /// References to nothing so far.
+    n_unknown_ids: usize,
     /// Plugins that are being read.
     open: Vec<usize>,
     /// Names that were asked of a plugin.
@@ -59,6 +64,7 @@ impl<'e> Reader<'e> {
             textures: HashMap::new(),
             meshes: Vec::new(),
             is_legacy: major.is_some_and(|major| major < 2),
+            n_unknown_ids: 0,
             open: Vec::new(),
             asked: HashMap::new(),
         };
@@ -101,7 +107,10 @@ impl<'e> Reader<'e> {
         let id = element.text("id");
         let found = self.ids.get(id).copied();
         if found.is_none() {
-            let known = self.ids.keys().copied().collect::<Vec<_>>();
+            self.n_unknown_ids += 1;
+            // To compare each of many with all that there are takes too long.
+            let all = self.n_unknown_ids <= MAX_SUGGESTED;
+            let known = self.ids.keys().copied().filter(|_| all).collect::<Vec<_>>();
             let span = element.attribute("id").map_or(element.span, |attribute| attribute.span);
             self.diagnostics.unknown_name(span, "id", id, known);
         }

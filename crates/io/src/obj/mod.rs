@@ -2,7 +2,7 @@
 //!
 //! Read are polygons, concave ones too, with negative indices, normals, texture coordinates and smoothing groups; faces of
 //! one material make one shape. Curves, surfaces, lines and points are skipped. A face without normals is flat unless it
-//! has a smoothing group.
+//! has a smoothing group; where a scene's file has neither, faces are smooth but for creases.
 
 mod materials;
 mod mesh;

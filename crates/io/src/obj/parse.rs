@@ -1,6 +1,8 @@
 //! The lines of an OBJ file (Wavefront, "Object Files", appendix B1 of the Advanced Visualizer manual): vertices, faces
 //! and what material and smoothing group they have.
 
+use std::collections::HashMap;
+
 use etendue_math::{Normal3, Point2, Point3};
 use etendue_scene::diagnostics::FileId;
 use etendue_scene::{Diagnostics, Span};
@@ -47,6 +49,8 @@ pub(super) struct ObjFile {
     pub(super) faces: Vec<Face>,
     /// Names of materials in the order of their first use; the first, empty, is that of faces before any `usemtl`.
     pub(super) materials: Vec<Name>,
+    /// True if the file says what is smooth.
+    pub(super) has_smoothing: bool,
     /// What `mtllib` names.
     pub(super) libraries: Vec<Name>,
 }
@@ -70,6 +74,7 @@ pub(super) fn parse(text: &str, file: FileId, diagnostics: &mut Diagnostics) -> 
         material: 0,
         group: 0,
         n_problems: 0,
+        known_materials: HashMap::from([(String::new(), 0)]),
         skipped: Vec::new(),
     };
     let mut start = 0;
@@ -106,6 +111,8 @@ struct Parser<'d, 't> {
     material: u32,
     group: u32,
     n_problems: usize,
+    /// Indices of materials by their names.
+    known_materials: HashMap<String, u32>,
     /// Keywords that were reported as skipped.
     skipped: Vec<&'t str>,
 }
@@ -143,7 +150,10 @@ impl<'t> Parser<'_, 't> {
                 let name = named();
                 self.obj.libraries.push(name);
             }
-            "s" => self.group = words.next().and_then(|word| word.parse().ok()).unwrap_or(0),
+            "s" => {
+                self.obj.has_smoothing = true;
+                self.group = words.next().and_then(|word| word.parse().ok()).unwrap_or(0);
+            }
             // Names, curves that nothing shows, and settings of programs of old.
             "g" | "o" | "vp" | "l" | "p" | "lod" | "mg" | "bevel" | "c_interp" | "d_interp"
             | "shadow_obj" | "trace_obj" | "maplib" | "usemap" => {}
@@ -227,12 +237,11 @@ impl<'t> Parser<'_, 't> {
     }
 
     fn use_material(&mut self, name: Name) {
-        let known = self.obj.materials.iter().position(|material| material.text == name.text);
-        let index = known.unwrap_or(self.obj.materials.len());
-        if known.is_none() {
+        let next = self.obj.materials.len() as u32;
+        self.material = *self.known_materials.entry(name.text.clone()).or_insert(next);
+        if self.material == next {
             self.obj.materials.push(name);
         }
-        self.material = index as u32;
     }
 }
 

@@ -15,7 +15,8 @@ use super::mesh::meshes_by_material;
 use super::mtl;
 use super::parse::{Name, parse};
 use crate::file::read_file;
-use crate::stage::{Ground, Up, set_stage};
+use crate::mesh::smooth_but_creases;
+use crate::stage::{CREASE_DEGREES, Ground, Up, set_stage};
 
 /// Libraries that a file may name.
 const MAX_LIBRARIES: usize = 1000;
@@ -50,7 +51,7 @@ pub fn read_obj_bytes(name: &str, bytes: Vec<u8>, base_directory: &Path) -> (Doc
     let meshes = meshes_by_material(&obj);
     let extent = Bounds3::from_points(obj.positions.iter().copied()).diagonal().max_element();
     let materials = read_libraries(&obj.libraries, extent, &mut document, &mut diagnostics);
-    for (index, (name, mesh)) in obj.materials.iter().zip(meshes).enumerate() {
+    for (index, (name, mut mesh)) in obj.materials.iter().zip(meshes).enumerate() {
         if mesh.triangles.is_empty() {
             continue;
         }
@@ -64,6 +65,9 @@ pub fn read_obj_bytes(name: &str, bytes: Vec<u8>, base_directory: &Path) -> (Doc
             None => grey(&mut document),
         };
         let part = if name.text.is_empty() { "mesh".to_owned() } else { format!("mesh of {}", name.text) };
+        if mesh.normals.is_empty() && !obj.has_smoothing {
+            smooth_but_creases(&mut mesh, CREASE_DEGREES);
+        }
         let file = document.embed(&part, EmbeddedFile::Mesh(mesh.into()));
         add_shape(&mut document, file, name.span, material, known);
     }

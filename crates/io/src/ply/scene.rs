@@ -11,11 +11,11 @@ use etendue_scene::{Diagnostics, Document, LoadedMesh};
 use super::read_ply;
 use crate::checkpoint::hash_bytes;
 use crate::file::read_file;
-use crate::mesh::{compute_normals, split_quads};
+use crate::mesh::{smooth_but_creases, split_quads};
 use crate::obj::bare_material;
-use crate::stage::{Ground, Up, set_stage};
+use crate::stage::{CREASE_DEGREES, Ground, Up, set_stage};
 
-/// Reads a PLY file as a scene: camera, light and ground are those of [`crate::stage`]. A mesh without normals is smooth.
+/// Reads a PLY file as a scene: camera, light and ground are those of [`crate::stage`]. A mesh without normals is smooth but for creases.
 ///
 /// The document is as complete as the errors in the diagnostics allow.
 #[must_use]
@@ -49,7 +49,7 @@ pub fn read_bare_ply(path: &Path) -> (Document, Diagnostics) {
 fn add_mesh(document: &mut Document, mut mesh: LoadedMesh) {
     split_quads(&mut mesh);
     if mesh.normals.is_empty() {
-        compute_normals(&mut mesh);
+        smooth_but_creases(&mut mesh, CREASE_DEGREES);
     }
     let color = ["vertex_color", "face_color"]
         .into_iter()
