@@ -24,6 +24,7 @@ pub mod spd;
 pub mod stage;
 pub mod tensor;
 
+mod exact;
 mod file;
 mod json;
 

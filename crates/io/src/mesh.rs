@@ -75,6 +75,7 @@ pub fn smooth_but_creases(mesh: &mut LoadedMesh, crease_degrees: f32) {
         }));
     }
     mesh.triangles = made;
+    mesh.tangents.clear();
     mesh.positions = origins.iter().map(|origin| mesh.positions[*origin as usize]).collect();
     if !mesh.uvs.is_empty() {
         mesh.uvs = origins.iter().map(|origin| mesh.uvs[*origin as usize]).collect();

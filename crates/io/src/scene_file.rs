@@ -6,6 +6,7 @@ use std::path::Path;
 
 use etendue_scene::{Diagnostics, Document};
 
+use crate::exact::make_transforms_exact;
 use crate::file::decompressed;
 use crate::gltf::read_gltf;
 use crate::mitsuba::read_mitsuba;
@@ -52,13 +53,16 @@ pub fn read_scene(path: &Path) -> (Document, Diagnostics) {
             Err(message) => return failed(&message),
         },
     };
-    match format {
-        Format::Pbrt => read_pbrt(path),
+    let (mut document, diagnostics) = match format {
+        Format::Pbrt => return read_pbrt(path),
         Format::Gltf => read_gltf(path),
         Format::Mitsuba => read_mitsuba(path),
         Format::Obj => read_obj(path),
         Format::Ply => read_bare_ply(path),
-    }
+    };
+    // So that a scene that is converted to pbrt's format stays the same bit for bit.
+    make_transforms_exact(&mut document);
+    (document, diagnostics)
 }
 
 fn failed(message: &str) -> (Document, Diagnostics) {
