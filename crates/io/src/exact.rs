@@ -6,7 +6,7 @@ use etendue_math::{AnimatedTransform, Transform};
 use etendue_scene::Document;
 
 /// Gives every transform of the document the inverse of its own matrix.
-pub fn make_transforms_exact(document: &mut Document) {
+pub(crate) fn make_transforms_exact(document: &mut Document) {
     let shapes = document.objects.iter_mut().flat_map(|object| &mut object.shapes);
     for shape in shapes.chain(&mut document.shapes) {
         each_end(&mut shape.world_from_object, exact);
