@@ -7,11 +7,8 @@ mod bad_scenes;
 mod brdf;
 mod checkpoint;
 mod degenerate;
-<<<<<<< HEAD
-mod lights;
-=======
 mod formats;
->>>>>>> 9ed5a41 (io: suns and skies of Mitsuba, creases of bare meshes, tests of both readers)
+mod lights;
 mod listing;
 mod outputs;
 mod parts;
