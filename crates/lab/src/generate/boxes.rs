@@ -6,7 +6,6 @@ use etendue_math::{Point3, Rng};
 use etendue_scene::LoadedMesh;
 
 use super::mesh::Grid;
-use super::noise::midpoint_heights;
 use super::settings::{SEED, count, number};
 use super::text::{Frame, placed, quad, sphere};
 use super::{Files, Generator, Settings};
@@ -18,7 +17,7 @@ pub(super) const FRACTAL: Generator = Generator {
     doc: "the box with walls of one fractal surface, 1.7 million triangles by 13 instances",
     parameters: &[
         count("levels", "8", [1, 12], "steps of subdivision: the surface has 2 * 4^levels triangles"),
-        number("height", "0.07", [0.0, 0.3], "m", "deviation of the first step"),
+        number("height", "0.1", [0.0, 0.3], "m", "by which the middles of edges move"),
         number("hurst", "0.75", [0.1, 1.0], "", "smoothness: each step is 2^-hurst times the one before"),
         SEED,
     ],
@@ -64,24 +63,24 @@ fn lamp(y: f32) -> String {
 
 fn fractal_box(settings: &Settings) -> Files {
     let (levels, height) = (settings.count("levels"), settings.number("height"));
-    let n = 1_usize << levels;
-    let heights = midpoint_heights(levels, settings.number("hurst"), settings.count("seed"));
-    let surface = Grid::sheet([n as u32; 2]).mesh(|u, v| {
-        let index = |t: f32| (t * n as f32).round() as usize;
-        Point3::new(u, v, heights[index(v) * (n + 1) + index(u)])
-    });
-    let n_triangles = 13 * surface.triangles.len();
+    let (hurst, seed) = (settings.number("hurst"), settings.count("seed"));
+    let n_stored = 2_usize << (2 * levels);
+    let n_triangles = 13 * n_stored;
     // A tile from its corner along two sides, with the direction of its peaks.
     let tile = |corner: [f32; 3], u: [f32; 3], v: [f32; 3], peaks: [f32; 3]| {
-        placed(corner, u, v, peaks.map(|x| x * height), "ObjectInstance \"wall\"")
+        placed(corner, u, v, peaks, "ObjectInstance \"wall\"")
     };
     let third = 4.0 / 3.0;
     let along = |k: u32| -3.0 + third * k as f32;
     let row = |tile_at: &dyn Fn(f32) -> String| (0..3).map(|k| tile_at(along(k))).collect::<String>();
     let across = [2.0, 0.0, 0.0];
     let (deep, high) = ([0.0, 0.0, third], [0.0, 1.9, 0.0]);
+    let surface = format!(
+        "Shape \"fractal\" \"point3 P\" [ 0 0 0  1 0 0  1 1 0  0 1 0 ] \"integer indices\" [ 0 1 2  0 2 3 ]\n    \
+         \"integer levels\" [ {levels} ] \"float amplitude\" [ {height} ] \"float hurst\" [ {hurst} ] \"integer seed\" [ {seed} ]\n"
+    );
     let text = format!(
-        r#"# The standard box with fractal walls: one surface of {stored} triangles, thirteen times; {n_triangles} elements in sight
+        r#"# The standard box with fractal walls: one surface of {n_stored} triangles, thirteen times; {n_triangles} elements in sight
 # (SPEC SCENE-11).
 #
 # Lengths are in metres, as in the standard box. The surface is made by {levels} steps of midpoint subdivision; its border is
@@ -97,7 +96,6 @@ NamedMaterial "silver"
 Material "dielectric" "float eta" [ 1.5 ]
 {glass}
 {lamp}"#,
-        stored = surface.triangles.len(),
         start = start("fractal-box", "0 0.9 -2.8   0 0.9 0", 0.014, 16),
         walls = [
             (
@@ -112,8 +110,7 @@ Material "dielectric" "float eta" [ 1.5 ]
         .map(|(color, tiles)| {
             let tiles = tiles.replace("\"wall\"", &format!("\"{color} wall\""));
             format!(
-                "NamedMaterial \"{color}\"\nObjectBegin \"{color} wall\"\n  Shape \"plymesh\" \"string filename\" \
-                 \"fractal-box.ply\"\nObjectEnd\n{tiles}\n"
+                "NamedMaterial \"{color}\"\nObjectBegin \"{color} wall\"\n  {surface}ObjectEnd\n{tiles}\n"
             )
         })
         .concat(),
@@ -122,7 +119,7 @@ Material "dielectric" "float eta" [ 1.5 ]
         glass = sphere([0.42, 0.52, -0.2], 0.36),
         lamp = lamp(1.7),
     );
-    Files::of_text("fractal-box", text).with_mesh("fractal-box", &surface)
+    Files::of_text("fractal-box", text)
 }
 
 fn water_box(settings: &Settings) -> Files {

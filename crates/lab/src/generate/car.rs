@@ -5,9 +5,9 @@ use std::f32::consts::TAU;
 use etendue_math::Point3;
 use etendue_scene::LoadedMesh;
 
-use super::mesh::{Grid, lathe, spline, split};
+use super::mesh::{Grid, split};
 use super::settings::count;
-use super::text::{Frame, quad};
+use super::text::{Frame, quad, revolved};
 use super::{Files, Generator, Settings};
 
 /// The car.
@@ -110,8 +110,8 @@ fn generate(settings: &Settings) -> Files {
         Frame { name: "car", resolution: [800, 450], exposure_s: 0.00018, samples: 100, max_depth: 12 };
     let mut wheels = String::new();
     for (x, side) in [-1.32, 1.38].into_iter().flat_map(|x| [(x, 1.0), (x, -1.0)]) {
-        // The axis of the wheel is y; its outer side looks along +z or -z.
-        let turn = 90.0 * side;
+        // The outer side of the wheel looks along z before it is turned.
+        let turn = 90.0 - 90.0 * side;
         let z = 0.73 * side;
         wheels.push_str(&format!(
             "AttributeBegin\n  Translate {x} 0.33 {z}\n  Rotate {turn} 1 0 0\n  ObjectInstance \"wheel\"\nAttributeEnd\n"
@@ -145,15 +145,10 @@ MakeNamedMaterial "chrome" "string type" "conductor" "spectrum eta" "metal-Al-et
   "float roughness" [ 0.02 ]
 ObjectBegin "wheel"
   NamedMaterial "rubber"
-  Shape "plymesh" "string filename" "car-tyre.ply"
-  # The wheel's arch.
-  AttributeBegin
-    Rotate -90 1 0 0
-    Shape "disk" "float radius" [ 0.4 ] "float height" [ 0.088 ]
-  AttributeEnd
+  {tyre}  # The wheel's arch.
+  Shape "disk" "float radius" [ 0.4 ] "float height" [ 0.088 ]
   NamedMaterial "chrome"
-  Shape "plymesh" "string filename" "car-rim.ply"
-ObjectEnd
+  {rim}ObjectEnd
 {wheels}
 # Headlights, mouth and bumpers.
 NamedMaterial "chrome"
@@ -185,6 +180,8 @@ AttributeBegin
 AttributeEnd
 "#,
         frame = frame.text(),
+        tyre = revolved(&TYRE),
+        rim = revolved(&RIM),
         ground = quad([-60.0, 0.0, -60.0], [60.0, 0.0, -60.0], [-60.0, 0.0, 60.0], [60.0, 0.0, 60.0]),
     );
     let cabin = loft(&CABIN, 2.6, n);
@@ -193,6 +190,40 @@ AttributeEnd
         .with_mesh("car-body", &loft(&BODY, 2.7, n))
         .with_mesh("car-cabin", &roof)
         .with_mesh("car-windows", &windows)
-        .with_mesh("car-tyre", &lathe(&spline(&TYRE, 4), 96))
-        .with_mesh("car-rim", &lathe(&spline(&RIM, 4), 96))
+}
+
+/// Points on a smooth curve through the given ones, `n` from each to the next: Catmull and Rom's, centripetal
+/// (Yuksel, Schaefer and Keyser 2011), which has no loops. Points that are given twice make corners.
+fn spline(points: &[[f32; 2]], n: u32) -> Vec<[f32; 2]> {
+    let at = |i: isize| points[i.clamp(0, points.len() as isize - 1) as usize];
+    let mut curve = Vec::new();
+    for i in 0..points.len() as isize - 1 {
+        let corners = [at(i - 1), at(i), at(i + 1), at(i + 2)];
+        if distance(corners[1], corners[2]) > 0.0 {
+            curve.extend((0..n).map(|k| centripetal(corners, k as f32 / n as f32)));
+        }
+    }
+    curve.extend(points.last());
+    curve
+}
+
+fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The curve between the second and the third point, by the pyramid of Barry and Goldman (1988).
+fn centripetal(points: [[f32; 2]; 4], t: f32) -> [f32; 2] {
+    let [a, b, c, d] = points;
+    // A point that is given twice has a knot of its own all the same.
+    let step = |p: [f32; 2], q: [f32; 2]| distance(p, q).sqrt().max(1e-6);
+    let t1 = step(a, b);
+    let t2 = t1 + step(b, c);
+    let t3 = t2 + step(c, d);
+    let t = t1 + t * (t2 - t1);
+    let mix = |p: [f32; 2], q: [f32; 2], t0: f32, t1: f32| {
+        let w = (t - t0) / (t1 - t0);
+        [p[0] + w * (q[0] - p[0]), p[1] + w * (q[1] - p[1])]
+    };
+    let (ab, bc, cd) = (mix(a, b, 0.0, t1), mix(b, c, t1, t2), mix(c, d, t2, t3));
+    mix(mix(ab, bc, 0.0, t2), mix(bc, cd, t1, t3), t1, t2)
 }

@@ -4,7 +4,7 @@
 use etendue_math::Point3;
 use etendue_scene::LoadedMesh;
 
-use super::mesh::{Grid, lathe, spline};
+use super::mesh::Grid;
 use super::noise::{fractal_noise, value_noise};
 use super::settings::{Knob, SEED, count, number};
 use super::text::{Frame, quad, sphere};
@@ -39,7 +39,6 @@ pub(super) const PENUMBRA: Generator = Generator {
 
 const KNOBS: &[Knob] = &[
     count("cells", "1024", [2, 4096], "cells along each side of the sand, of two triangles each"),
-    count("around", "256", [8, 4096], "vertices around the glass"),
     number("lamp-radius", "0.03", [1e-3, 0.1], "m", "of the round lamp"),
     SEED,
 ];
@@ -57,7 +56,7 @@ impl View {
         Self { name: "cognac", look_at: "0.02 0.19 -0.4   0.03 0.032 0", fov: 27.0, has_square_lamp: false };
     const CLOSEUP: Self = Self {
         name: "cognac-closeup",
-        look_at: "0.06 0.11 -0.2   0.08 0.0 -0.035",
+        look_at: "0.09 0.12 -0.19   0.1 0.0 -0.03",
         fov: 30.0,
         has_square_lamp: false,
     };
@@ -69,7 +68,7 @@ const LAMP: [f32; 3] = [-0.32, 0.36, 0.16];
 
 fn generate(settings: &Settings, view: &View) -> Files {
     let View { name, look_at, fov, .. } = view;
-    let frame = Frame { name, resolution: [640, 480], exposure_s: 0.004, samples: 1024, max_depth: 24 };
+    let frame = Frame { name, resolution: [640, 480], exposure_s: 0.009, samples: 1024, max_depth: 24 };
     let lamp = if view.has_square_lamp {
         let [x, y, z] = LAMP;
         quad([x, y, z - 0.06], [x, y, z + 0.06], [x + 0.1, y + 0.06, z - 0.06], [x + 0.1, y + 0.06, z + 0.06])
@@ -98,13 +97,18 @@ Texture "sand" "spectrum" "imagemap" "string filename" "cognac-sand.ppm"
 Material "schlick" "texture reflectance" [ "sand" ] "float roughness" [ 0.6 ]
 Shape "plymesh" "string filename" "cognac-sand.ply"
 
-# Index 1.5 inside of the glass; cognac has 1.36 and absorbs green and blue.
-Material "dielectric" "float eta" [ 1.5 ]
-Shape "plymesh" "string filename" "cognac-glass-air.ply"
-Material "dielectric" "float eta" [ 1.5 ] "float eta_exterior" [ 1.36 ] "rgb absorption_exterior" [ 6 30 100 ]
-Shape "plymesh" "string filename" "cognac-glass-cognac.ply"
-Material "dielectric" "float eta" [ 1.36 ] "rgb absorption" [ 6 30 100 ]
-Shape "plymesh" "string filename" "cognac-cognac-air.ply"
+# Index 1.5 inside of the glass; cognac has 1.36 and absorbs green and blue. Tolerances are in proportion to the largest
+# radii, so that all three have as many corners around and meet in the same ones.
+AttributeBegin
+  Rotate -90 1 0 0
+  Scale 0.01 0.01 0.01
+  Material "dielectric" "float eta" [ 1.5 ]
+  Shape "revolution" "string filename" "cognac-glass.csv" "string profile" "glass-air" "float tolerance" [ 0.0008 ]
+  Material "dielectric" "float eta" [ 1.5 ] "float eta_exterior" [ 1.36 ] "rgb absorption_exterior" [ 6 30 100 ]
+  Shape "revolution" "string filename" "cognac-glass.csv" "string profile" "glass-cognac" "float tolerance" [ 0.00076 ]
+  Material "dielectric" "float eta" [ 1.36 ] "rgb absorption" [ 6 30 100 ]
+  Shape "revolution" "string filename" "cognac-glass.csv" "string profile" "cognac-air" "float tolerance" [ 0.00076 ]
+AttributeEnd
 
 AttributeBegin
   Material "diffuse" "rgb reflectance" [ 0 0 0 ]
@@ -120,32 +124,13 @@ AttributeBegin
         frame = frame.text(),
         two_sided = view.has_square_lamp,
     );
-    let n_around = settings.count("around");
-    let files = Files::of_text(name, text);
-    PROFILES
-        .into_iter()
-        .fold(files, |files, profile| {
-            files.with_mesh(&format!("cognac-{profile}"), &lathe(&contour(profile), n_around))
-        })
+    Files::of_text(name, text)
+        .with_bytes("cognac-glass.csv", CSV.as_bytes().to_vec())
         .with_mesh("cognac-sand", &sand)
         .with_bytes("cognac-sand.ppm", sand_picture(settings.count("seed")))
 }
 
 const CSV: &str = include_str!("../../data/cognac-glass.csv");
-const PROFILES: [&str; 3] = ["glass-air", "glass-cognac", "cognac-air"];
-
-/// The contour of one interface as (radius, height) in metres, smoothly from point to point.
-pub(super) fn contour(profile: &str) -> Vec<[f32; 2]> {
-    let row = |line: &str| {
-        let mut fields = line.split(',');
-        let is_wanted = fields.next() == Some(profile);
-        let mut number = || fields.next()?.trim().parse::<f32>().ok();
-        let (height, radius) = (number()?, number()?);
-        is_wanted.then_some([0.01 * radius, 0.01 * height])
-    };
-    let points: Vec<[f32; 2]> = CSV.lines().filter_map(row).collect();
-    spline(&points, 6)
-}
 
 /// Wavy sand with grains, flat below the glass.
 fn sand(n: u32, seed: u32) -> LoadedMesh {

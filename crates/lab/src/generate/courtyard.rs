@@ -15,7 +15,7 @@ pub(super) const GENERATOR: Generator = Generator {
     name: "courtyard",
     id: "SCENE-15",
     doc: "a house of glass and curved walls around a court, at any time of a day in June",
-    parameters: &[number("hour", "15", [3.0, 21.0], "h", "solar time: 12 is noon")],
+    parameters: &[number("hour", "15", [4.5, 19.5], "h", "solar time: 12 is noon")],
     generate,
 };
 

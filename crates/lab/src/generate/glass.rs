@@ -4,10 +4,9 @@ use std::f32::consts::TAU;
 
 use etendue_math::Rng;
 
-use super::mesh::{lathe, spline};
 use super::noise::value_noise;
 use super::settings::{SEED, count, number};
-use super::text::{Frame, cuboid, quad, sphere};
+use super::text::{Frame, cuboid, quad, revolved, sphere};
 use super::{Files, Generator, Settings};
 
 /// A wine glass on a table, before a mirror (SPEC SCENE-6).
@@ -104,7 +103,9 @@ Material "conductor" "rgb reflectance" [ 0.92 0.92 0.92 ]
 {mirror}Material "diffuse" "rgb reflectance" [ 0.2 0.12 0.07 ]
 {back}
 Material "dielectric" "float eta" [ 1.5 ]
-Shape "plymesh" "string filename" "wineglass.ply"
+AttributeBegin
+  Rotate -90 1 0 0
+  {glass}AttributeEnd
 
 AttributeBegin
   Material "diffuse" "rgb reflectance" [ 0 0 0 ]
@@ -116,9 +117,10 @@ AttributeBegin
         table = quad([-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [-1.0, 0.0, 1.0], [1.0, 0.0, 1.0]),
         mirror = quad([-0.2, 0.001, 0.13], [0.2, 0.001, 0.13], [-0.2, 0.24, 0.13], [0.2, 0.24, 0.13]),
         back = cuboid([-0.21, 0.0, 0.1305], [0.21, 0.25, 0.14]),
+        glass = revolved(&WINEGLASS_CONTOUR),
         lamp = sphere([-0.22, 0.3, -0.12], settings.number("lamp-radius")),
     );
-    Files::of_text("wineglass", text).with_mesh("wineglass", &lathe(&spline(&WINEGLASS_CONTOUR, 16), 256))
+    Files::of_text("wineglass", text)
 }
 
 fn wood_ball(settings: &Settings) -> Files {

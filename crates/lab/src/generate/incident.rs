@@ -41,11 +41,11 @@ fn generate(settings: &Settings) -> Files {
         let _ = write!(rods, "{}", rod(place, *direction));
     }
     let n = directions.len();
-    let eye = [place[0] - 0.55, 0.6, place[2] - 1.0];
+    let eye = [place[0] + 0.2, 0.42, place[2] - 0.75];
     let text = BOX
         .replace(
             LOOK_AT,
-            &format!("LookAt {} {} {}   {} 0.16 {}   0 1 0", eye[0], eye[1], eye[2], place[0], place[2]),
+            &format!("LookAt {} {} {}   {} 0.1 {}   0 1 0", eye[0], eye[1], eye[2], place[0], place[2]),
         )
         .replace("box.exr", "incident.exr");
     let text = text.find("\n\n").map_or(text.as_str(), |end| &text[end + 2..]);

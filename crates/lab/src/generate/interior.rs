@@ -4,8 +4,9 @@ use std::f32::consts::PI;
 
 use etendue_math::Point3;
 
-use super::mesh::{Grid, lathe, spline};
-use super::text::{Frame, cuboid, quad, sphere};
+use super::mesh::Grid;
+use super::sun;
+use super::text::{Frame, cuboid, quad, revolved, sphere};
 use super::{Files, Generator, Settings};
 
 /// A ball between two walls (SPEC SCENE-7).
@@ -94,17 +95,14 @@ fn interior(_: &Settings) -> Files {
 #   aisles    to x = -4 and x = 4, flat ceilings at y = 4.5
 #   length    z -3 to 16.5; columns every 3 m from z = 0
 #   windows   in the left wall between columns, 1.5 wide, from y = 0.9 to 3.9; one in the end wall
-#   sun       elevation 36 degrees, from the left, 60 000 lux; sky 9000 lux on an open plane
+#   sun       elevation 36 degrees, from the left; a clear sky
 
 LookAt -0.9 1.65 -2.6   0.35 2.15 7   0 1 0
 Camera "perspective" "float fov" [ 62 ]
 {frame}
 WorldBegin
 
-LightSource "infinite" "float illuminance" [ 9000 ] "rgb L" [ 0.75 0.87 1 ]
-LightSource "distant" "point3 from" [ -1 0.76 0.35 ] "point3 to" [ 0 0 0 ] "float illuminance" [ 60000 ]
-  "blackbody L" [ 5400 ]
-
+{light}
 # Floor of dark and light marble.
 Texture "tiles" "spectrum" "checkerboard" "float uscale" [ 16 ] "float vscale" [ 39 ]
   "rgb tex1" [ 0.62 0.58 0.5 ] "rgb tex2" [ 0.22 0.16 0.13 ]
@@ -117,7 +115,9 @@ Shape "plymesh" "string filename" "interior-vault.ply"
 
 Material "diffuse" "rgb reflectance" [ 0.72 0.66 0.56 ]
 ObjectBegin "column"
-  Shape "plymesh" "string filename" "interior-column.ply"
+  AttributeBegin
+    Rotate -90 1 0 0
+    {column}  AttributeEnd
 ObjectEnd
 {columns}
 # Benches, and a bronze ball on a pedestal.
@@ -128,6 +128,7 @@ Material "diffuse" "rgb reflectance" [ 0.6 0.6 0.58 ]
 Material "conductor" "spectrum eta" "metal-CuZn-eta" "spectrum k" "metal-CuZn-k" "float roughness" [ 0.1 ]
 {ball}"#,
         frame = frame.text(),
+        light = sun::light([-1.0, 0.76, 0.35]),
         floor = quad([-4.0, 0.0, -3.0], [4.0, 0.0, -3.0], [-4.0, 0.0, 16.5], [4.0, 0.0, 16.5]),
         ceilings = [-4.0, 2.2].map(|x| cuboid([x, 4.5, -3.0], [x + 1.8, 4.6, 16.5])).concat(),
         beams = [-2.5, 2.0].map(|x| cuboid([x, 4.0, -3.0], [x + 0.5, 4.6, 16.5])).concat(),
@@ -141,6 +142,7 @@ Material "conductor" "spectrum eta" "metal-CuZn-eta" "spectrum k" "metal-CuZn-k"
         ]
         .concat(),
         window_wall = window_wall(),
+        column = revolved(&COLUMN),
         benches = [[-1.9, 1.0], [-1.9, 4.0], [1.4, 4.0], [1.4, 7.0]]
             .map(|[x, z]| {
                 let top = cuboid([x, 0.4, z], [x + 0.5, 0.46, z + 1.8]);
@@ -151,9 +153,7 @@ Material "conductor" "spectrum eta" "metal-CuZn-eta" "spectrum k" "metal-CuZn-k"
         pedestal = cuboid([0.95, 0.0, 1.6], [1.45, 1.0, 2.1]),
         ball = sphere([1.2, 1.3, 1.85], 0.3),
     );
-    Files::of_text("interior", text)
-        .with_mesh("interior-column", &column())
-        .with_mesh("interior-vault", &vault())
+    Files::of_text("interior", text).with_mesh("interior-vault", &vault())
 }
 
 /// The wall at x = -4, 0.3 thick, with a window in each bay.
@@ -169,29 +169,24 @@ fn window_wall() -> String {
     wall + &slab([0.9, 3.9], [start, 16.5])
 }
 
-/// A column of height 4 with foot and capital.
-fn column() -> etendue_scene::LoadedMesh {
-    let contour = [
-        [0.36, 0.0],
-        [0.36, 0.1],
-        [0.36, 0.1],
-        [0.34, 0.14],
-        [0.28, 0.18],
-        [0.25, 0.24],
-        [0.24, 0.4],
-        [0.245, 1.5],
-        [0.21, 3.4],
-        [0.21, 3.45],
-        [0.24, 3.5],
-        [0.22, 3.55],
-        [0.24, 3.7],
-        [0.34, 3.86],
-        [0.36, 3.9],
-        [0.36, 3.9],
-        [0.36, 4.0],
-    ];
-    lathe(&spline(&contour, 6), 64)
-}
+/// Contour of a column of height 4 with foot and capital.
+const COLUMN: [[f32; 2]; 15] = [
+    [0.36, 0.0],
+    [0.36, 0.1],
+    [0.34, 0.14],
+    [0.28, 0.18],
+    [0.25, 0.24],
+    [0.24, 0.4],
+    [0.245, 1.5],
+    [0.21, 3.4],
+    [0.21, 3.45],
+    [0.24, 3.5],
+    [0.22, 3.55],
+    [0.24, 3.7],
+    [0.34, 3.86],
+    [0.36, 3.9],
+    [0.36, 4.0],
+];
 
 fn vault() -> etendue_scene::LoadedMesh {
     Grid::sheet([64, 1]).mesh(|u, v| {

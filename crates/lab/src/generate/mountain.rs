@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
+use etendue_geometry::{FractalHeights, HeightGrid};
 use etendue_math::{Point3, Rng};
 use etendue_scene::LoadedMesh;
 
 use super::mesh::Grid;
-use super::noise::{fractal_noise, midpoint_heights};
+use super::noise::fractal_noise;
 use super::plants::fir;
 use super::settings::{SEED, choice, count};
 use super::sun;
@@ -20,7 +21,7 @@ pub(super) const GENERATOR: Generator = Generator {
     doc: "a mountain with 13 000 trees, 213 million triangles by instances, at noon or at sunset",
     parameters: &[
         choice("time", "noon", &["noon", "sunset"], "where the sun is"),
-        count("levels", "10", [2, 12], "steps of subdivision: the terrain has 2 * 4^levels triangles"),
+        count("levels", "10", [2, 11], "steps of subdivision: the terrain has 2 * 4^levels triangles"),
         count("trees", "13000", [0, 1_000_000], "number of trees"),
         count("needles", "30", [1, 100], "bundles of needles on each of the 270 branches of a tree"),
         SEED,
@@ -42,7 +43,9 @@ struct Terrain {
 impl Terrain {
     fn new(levels: u32, seed: u32) -> Self {
         let n = 1_usize << levels;
-        let fractal = midpoint_heights(levels, 0.95, seed);
+        let fractal = FractalHeights { levels, hurst: 0.95, amplitude: 6.0, seed: seed.into() };
+        let fractal = HeightGrid::fractal(&fractal);
+        let fractal = fractal.heights();
         let place = |k: usize| SIZE * (k as f32 / n as f32 - 0.5);
         let height = |index: usize| {
             let (x, z) = (place(index % (n + 1)), place(index / (n + 1)));
@@ -96,7 +99,7 @@ impl Terrain {
             } else if slope > 0.85 || height > 800.0 {
                 [118.0 * shade, 108.0 * shade, 98.0 * shade]
             } else {
-                [96.0 * shade, 112.0 * shade, 52.0 * shade]
+                [82.0 * shade, 92.0 * shade, 50.0 * shade]
             };
             picture.extend(color.map(|level| level.clamp(0.0, 255.0) as u8));
         }

@@ -27,6 +27,8 @@ fn generate(settings: &Settings) -> Files {
     let mut world = String::new();
     let mut lines = Vec::new();
     kd_tree(&mut points.clone(), [[0.0, 0.0], [1.0, 1.0]], &mut lines);
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    lines.extend((0..4).map(|k| [corners[k], corners[(k + 1) % 4]]));
     for [a, b] in lines {
         line(&mut world, shift(a, -1.05), shift(b, -1.05));
     }

@@ -1,8 +1,7 @@
 //! Rooms whose light comes by detours: what bidirectional and Metropolis methods are made for.
 
-use super::mesh::{lathe, spline};
 use super::settings::{count, number};
-use super::text::{Frame, cuboid, quad, sphere};
+use super::text::{Frame, cuboid, quad, revolved, sphere};
 use super::{Files, Generator, Settings};
 
 /// A lamp that lights a spot of the ceiling alone (SPEC SCENE-4).
@@ -152,27 +151,24 @@ AreaLightSource "diffuse" "float power" [ {power_lm} ]
     )
 }
 
-/// A pot with a lid, of height about 0.3 and radius 0.18.
-fn pot() -> etendue_scene::LoadedMesh {
-    let contour = [
-        [0.0, 0.0],
-        [0.11, 0.0],
-        [0.125, 0.008],
-        [0.16, 0.06],
-        [0.18, 0.12],
-        [0.165, 0.18],
-        [0.13, 0.215],
-        [0.125, 0.225],
-        [0.115, 0.235],
-        [0.06, 0.25],
-        [0.02, 0.257],
-        [0.022, 0.275],
-        [0.03, 0.29],
-        [0.02, 0.305],
-        [0.0, 0.308],
-    ];
-    lathe(&spline(&contour, 8), 96)
-}
+/// Contour of a pot with a lid, of height about 0.3 and radius 0.18.
+const POT: [[f32; 2]; 15] = [
+    [0.0, 0.0],
+    [0.11, 0.0],
+    [0.125, 0.008],
+    [0.16, 0.06],
+    [0.18, 0.12],
+    [0.165, 0.18],
+    [0.13, 0.215],
+    [0.125, 0.225],
+    [0.115, 0.235],
+    [0.06, 0.25],
+    [0.02, 0.257],
+    [0.022, 0.275],
+    [0.03, 0.29],
+    [0.02, 0.305],
+    [0.0, 0.308],
+];
 
 fn door(settings: &Settings) -> Files {
     let angle = settings.number("angle");
@@ -195,18 +191,18 @@ Material "diffuse" "rgb reflectance" [ 0.35 0.22 0.12 ]
 AttributeBegin
   Translate -1.0 0.75 -1.5
   Material "diffuse" "rgb reflectance" [ 0.3 0.5 0.6 ]
-  Shape "plymesh" "string filename" "door-pot.ply"
-AttributeEnd
+  Rotate -90 1 0 0
+  {pot}AttributeEnd
 AttributeBegin
   Translate -0.5 0.75 -1.2
   Material "conductor" "spectrum eta" "metal-Al-eta" "spectrum k" "metal-Al-k" "float roughness" [ 0.05 ]
-  Shape "plymesh" "string filename" "door-pot.ply"
-AttributeEnd
+  Rotate -90 1 0 0
+  {pot}AttributeEnd
 AttributeBegin
   Translate 0 0.75 -1.5
   Material "dielectric" "float eta" [ 1.5 ]
-  Shape "plymesh" "string filename" "door-pot.ply"
-AttributeEnd
+  Rotate -90 1 0 0
+  {pot}AttributeEnd
 "#,
         rooms = two_rooms("door", 40_000.0, 0.03),
         left = cuboid([-2.0, 0.0, 0.0], [0.25, 2.6, 0.1]),
@@ -214,8 +210,9 @@ AttributeEnd
         above = cuboid([0.25, 2.06, 0.0], [1.15, 2.6, 0.1]),
         panel = cuboid([-0.89, 0.005, -0.02], [0.0, 2.055, 0.02]),
         table = table([-1.4, 0.3], 0.75, [-1.9, -0.9]),
+        pot = revolved(&POT),
     );
-    Files::of_text("door", text).with_mesh("door-pot", &pot())
+    Files::of_text("door", text)
 }
 
 fn holes(settings: &Settings) -> Files {

@@ -59,7 +59,7 @@ pub(super) const fn choice(
 }
 
 /// The seed of what is random in a scene.
-pub(super) const SEED: Knob = count("seed", "1", [0, u32::MAX], "random seed");
+pub(super) const SEED: Knob = count("seed", "1", [0, i32::MAX as u32], "random seed");
 
 /// Why parameters are refused: a sentence for whom typed them.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -80,3 +80,18 @@ pub(super) fn placed(origin: [f32; 3], x: [f32; 3], y: [f32; 3], z: [f32; 3], di
         "AttributeBegin\n  ConcatTransform [ {x} 0  {y} 0  {z} 0  {origin} 1 ]\n  {directive}\nAttributeEnd\n"
     )
 }
+
+/// A surface of revolution about z; the contour is given as (radius, height), and has its normals to the right of the way
+/// along it, as it is drawn with the radius to the right and the height upwards.
+pub(super) fn revolved(contour: &[[f32; 2]]) -> String {
+    let points: Vec<f32> = contour.iter().flat_map(|[radius, height]| [*height, *radius]).collect();
+    format!("Shape \"revolution\" \"point2 contour\" [ {} ]\n", pairs(&points))
+}
+
+/// Numbers in pairs, eight to a line.
+fn pairs(values: &[f32]) -> String {
+    let pair = |p: &[f32]| format!("{} {}", p[0], p[1]);
+    let lines: Vec<String> =
+        values.chunks(16).map(|line| line.chunks_exact(2).map(pair).collect::<Vec<_>>().join("  ")).collect();
+    lines.join("\n  ")
+}
