@@ -31,6 +31,8 @@ mod double;
 pub mod points;
 
 #[cfg(test)]
+mod robustness;
+#[cfg(test)]
 mod test_support;
 
 pub use accelerator::{Accelerator, BinarySplit, DivisionSettings, GridSettings, KdTreeSettings};
