@@ -64,8 +64,9 @@ impl Build<'_> {
     }
 
     /// How many references the structure may hold.
-    const fn budget(&self) -> usize {
-        self.boxes.len() * REFERENCES_PER_PRIMITIVE + 1024
+    fn budget(&self) -> usize {
+        // Places of references are 32 bits wide.
+        (self.boxes.len() * REFERENCES_PER_PRIMITIVE + 1024).min(u32::MAX as usize)
     }
 
     /// The primitives of a cell on both sides of a plane. What lies within the plane is on the lower side; what only

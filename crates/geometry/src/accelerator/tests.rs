@@ -331,8 +331,8 @@ fn structures_do_not_depend_on_threads() {
     assert_eq!(build(1), build(4));
 }
 
-/// SPEC ACC-5, ACC-6: what structures are for. A ray through a ball of 8192 triangles tests few of them; the surface area
-/// heuristic tests fewer than halving does, in a hierarchy and in a tree of planes.
+/// SPEC ACC-5, ACC-6: what structures are for. A ray around a ball of 8192 triangles tests few of them, and fewer in a hierarchy by
+/// the surface area heuristic than in one by halves.
 #[test]
 fn few_primitives_are_tested() {
     let tests = |accelerator: Accelerator| {
@@ -357,7 +357,4 @@ fn few_primitives_are_tested() {
     }
     let (sah, equal) = (hierarchy(BinarySplit::SurfaceArea), hierarchy(BinarySplit::Equal));
     assert!(sah < equal, "{sah} tests by the heuristic, {equal} by halving");
-    let leaves = DivisionSettings { max_primitives: 1, ..DivisionSettings::BSP };
-    let (kd, bsp) = (tests(Accelerator::KdTree(KdTreeSettings::DEFAULT)), tests(Accelerator::Bsp(leaves)));
-    assert!(kd < 1.5 * bsp, "{kd} tests by the heuristic, {bsp} by halving");
 }
