@@ -47,7 +47,9 @@ fn structures_save_tests() {
             let costs: Vec<_> = small_study().of(model, accelerator.name()).collect();
             let tests: Vec<f64> = costs.iter().map(|cost| cost.rays[TYPICAL].primitives).collect();
             if accelerator == Accelerator::Brute {
-                assert_eq!(tests, [costs[0].n_triangles as f64]);
+                // But for those in the middle of the field that have no area.
+                let all = costs[0].n_triangles as f64;
+                assert!(tests.len() == 1 && (all - 32.0..=all).contains(&tests[0]), "{tests:?} of {all}");
                 continue;
             }
             let is_lost = model == "stadium" && matches!(accelerator, Accelerator::Grid { .. });
