@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use etendue::image::{Encoding, Image, Texels};
 use etendue::io::images::write_atomically;
 use etendue::io::{read_scene, write_image, write_pbrt, write_ply};
-use etendue::scene::document::{Document, EmbeddedFile, Entity, Value};
+use etendue::scene::document::{Document, EmbeddedFile, Entity, Parameter, Value};
 
 use crate::args::ConvertArguments;
 use crate::failure::{Failure, Result};
@@ -21,6 +21,7 @@ pub(crate) fn run(arguments: &ConvertArguments) -> Result<()> {
     if diagnostics.has_errors() {
         return Err(Failure::Scene);
     }
+    write_out_tangents(&mut document);
     let files = Files::of(&mut document, output);
     files.write(output)?;
     let text = write_pbrt(&document);
@@ -43,6 +44,51 @@ fn check_paths(scene: &Path, output: &Path) -> Result<()> {
         return Err(Failure::Usage("the output would overwrite the input; choose another name".to_owned()));
     }
     Ok(())
+}
+
+/// Meshes with tangents become `trianglemesh`es in the scene itself, since PLY files have none.
+fn write_out_tangents(document: &mut Document) {
+    let embedded = &document.embedded;
+    let mut written: Vec<String> = Vec::new();
+    let shapes = document.objects.iter_mut().flat_map(|object| &mut object.shapes);
+    for shape in shapes.chain(&mut document.shapes) {
+        let entity = &mut shape.entity;
+        let name = entity.parameters.iter().find(|p| p.name == "filename").map(|p| &p.value);
+        let Some(Value::Strings(names)) = name else { continue };
+        let Some(EmbeddedFile::Mesh(mesh)) = names.first().and_then(|name| embedded.get(name)) else {
+            continue;
+        };
+        if entity.type_name != "plymesh" || mesh.tangents.is_empty() || !mesh.quads.is_empty() {
+            continue;
+        }
+        let indices = mesh.triangles.iter().flatten().map(|vertex| *vertex as i32).collect();
+        let arrays = [
+            ("P", Value::Points3(mesh.positions.clone())),
+            ("indices", Value::Integers(indices)),
+            ("N", Value::Normals3(mesh.normals.clone())),
+            ("S", Value::Vectors3(mesh.tangents.clone())),
+            ("uv", Value::Points2(mesh.uvs.clone())),
+            ("faceIndices", Value::Integers(mesh.face_indices.clone())),
+        ];
+        written.extend(names.first().cloned());
+        entity.type_name = "trianglemesh".to_owned();
+        entity.parameters.retain(|p| p.name != "filename");
+        let given = arrays.into_iter().filter(|(_, value)| !is_empty(value));
+        entity.parameters.extend(given.map(|(name, value)| Parameter::new(name, value)));
+    }
+    document.embedded.retain(|name, _| !written.contains(name));
+}
+
+/// True for a list without values.
+fn is_empty(value: &Value) -> bool {
+    match value {
+        Value::Points3(list) => list.is_empty(),
+        Value::Normals3(list) => list.is_empty(),
+        Value::Vectors3(list) => list.is_empty(),
+        Value::Points2(list) => list.is_empty(),
+        Value::Integers(list) => list.is_empty(),
+        _ => false,
+    }
 }
 
 /// What is to be written beside the scene.
