@@ -75,7 +75,7 @@ fn linked(name: &str, linked: &str, key: f64, integrator: &str) -> etendue_scene
         Translate 0 -0.5 0 Shape \"sphere\" \"float radius\" 0.5 {linked} AttributeEnd
         AttributeBegin Translate 0.7 -0.6 0 Material \"conductor\" Shape \"sphere\" \"float radius\" 0.3 {linked} AttributeEnd
         AttributeBegin Translate 0 2 -1 AreaLightSource \"diffuse\" {} \"string group\" \"key\"
-        Shape \"sphere\" \"float radius\" 0.4 AttributeEnd
+        Shape \"sphere\" \"float radius\" 0.4 {linked} AttributeEnd
         LightSource \"point\" {} \"point3 from\" [1 1 -1] \"string group\" \"key\"
         LightSource \"infinite\" {}",
         flat("reflectance", 0.5),
