@@ -163,9 +163,9 @@ fn middle(bounds: &Box3) -> [f32; 3] {
 /// The box of one of eight parts.
 fn part(bounds: &Box3, middle: &[f32; 3], part: usize) -> Box3 {
     let mut own = *bounds;
-    for axis in 0..3 {
+    for (axis, position) in middle.iter().enumerate() {
         let side = if part >> axis & 1 == 0 { &mut own.max } else { &mut own.min };
-        side[axis] = middle[axis];
+        side[axis] = *position;
     }
     own
 }
