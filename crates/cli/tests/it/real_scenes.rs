@@ -80,3 +80,20 @@ fn scenes_render() {
         assert!(mean(&image) > 0.0, "{name}");
     }
 }
+
+/// A helmet in glTF, with six materials and no camera or light of its own: nothing is left out, and a stage is set.
+#[test]
+fn the_helmet_loads() {
+    let path = scene_folder().join("gltf-flight-helmet/FlightHelmet.gltf");
+    assert!(path.is_file() || !is_demanded(), "there is no file {}", path.display());
+    if !path.is_file() {
+        println!("skipped the helmet, which is not at {}", path.display());
+        return;
+    }
+    let json = Folder::new().run_with(&["info", &path.display().to_string(), "--json"]).expect(0).json();
+    assert_eq!(json["warnings"].to_string(), "[]");
+    let n_triangles = json["geometry"]["triangles"].as_u64().expect("a number");
+    assert!((94_722..94_800).contains(&n_triangles), "{n_triangles}");
+    assert!(json["materials"].as_u64().is_some_and(|n| n >= 7), "{}", json["materials"]);
+    assert!(json["lights"].as_array().is_some_and(|lights| !lights.is_empty()));
+}

@@ -57,6 +57,7 @@ impl<'a> Reader<'a> {
         let n = positions.count;
         let topology = self.topology(primitive, &attributes, n)?;
         let morphs = self.morphs(primitive, wanted.weights, n);
+        self.charge(primitive, morphs.len().saturating_mul(topology.vertices.len()))?;
         let mut mesh = LoadedMesh { triangles: topology.triangles, ..LoadedMesh::default() };
         let vertices = &topology.vertices;
         let vector = |accessor: &Accessor<'_>, vertex: u32| {

@@ -111,7 +111,10 @@ impl<'a> Reader<'a> {
             },
             None => {
                 self.file.required(image, "bufferView")?;
-                self.buffers.view(&self.file, image, "bufferView")?.bytes.into()
+                let bytes = self.buffers.view(&self.file, image, "bufferView")?.bytes;
+                // Many pictures may claim the same bytes.
+                self.charge(image, bytes.len())?;
+                bytes.into()
             }
         };
         Some(self.document.embed(&part, EmbeddedFile::Bytes(bytes)))

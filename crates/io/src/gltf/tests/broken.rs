@@ -97,7 +97,7 @@ fn accessors() {
         "\"byteLength\": 36, \"byteStride\": 4}",
         "/accessors/0: elements of 12 bytes overlap",
     );
-    check("\"byteOffset\": 36", "\"byteOffset\": 0", "/meshes/0/primitives/0/indices: index");
+    check("\"byteOffset\": 36", "\"byteOffset\": 14", "/meshes/0/primitives/0/indices: index");
     check("\"byteOffset\": 36", "\"byteOffset\": 44", "/bufferViews/1: bytes 44 to 44 + 6 are beyond");
     check("\"byteLength\": 42", "\"byteLength\": 4200", "/buffers/0: the buffer should have 4800 bytes");
     check(
