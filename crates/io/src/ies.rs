@@ -179,7 +179,7 @@ fn read_table(numbers: &mut Numbers) -> Result<Photometry, IesError> {
     for _ in 0..n_vertical * n_horizontal {
         let value = numbers.next("a candela value")? * factor;
         if !(0.0..=f64::from(f32::MAX)).contains(&value) {
-            return numbers.fail(format!("a candela value should be at least 0 and in range, not {value}"));
+            return numbers.fail(format!("a candela value should be at least 0 and in range, not {value:e}"));
         }
         candela.push(value as f32);
     }

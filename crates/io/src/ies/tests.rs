@@ -50,7 +50,7 @@ fn impossible_files_are_refused_with_their_line() {
     check_error(&with("2 2 1 1", "2 1e9 1 1"), 4, "more than the file holds");
     check_error(&with("2 2 1 1", "2 2 -3 1"), 4, "whole number");
     check_error(&with("2 2 1 1", "2 2.5 1 1"), 4, "whole number");
-    check_error(&with("2 2 1 1", "2 20 20 1"), 4, "more candela values than the file holds");
+    check_error(&with("2 2 1 1", "2 9 9 1"), 4, "more candela values than the file holds");
     check_error(&with("2 2 1 1 2", "2 2 1 4 2"), 4, "photometric type");
     check_error(&with("2 2 1 1 2", "2 2 1 1 3"), 4, "type of units");
     check_error(&with("0.5 1 60", "-0.5 1 60"), 5, "negative");
