@@ -77,7 +77,7 @@ fn linked(name: &str, linked: &str, key: f64, integrator: &str) -> etendue_scene
         AttributeBegin Translate 0 2 -1 AreaLightSource \"diffuse\" {} \"string group\" \"key\"
         Shape \"sphere\" \"float radius\" 0.4 {linked} AttributeEnd
         LightSource \"point\" {} \"point3 from\" [1 1 -1] \"string group\" \"key\"
-        LightSource \"infinite\" {}",
+        LightSource \"infinite\" {} \"string group\" \"fill\"",
         flat("reflectance", 0.5),
         lit("L", key),
         lit("I", key),
@@ -97,7 +97,7 @@ fn linked_lights_reach_whom_they_may() {
         let scene = linked(lights, "\"string lights\" [ \"fill\" ]", 5.0, &integrator);
         expect_same_image(lights, &block_moments(&scene, 96, 2), &dark, 0.05);
     }
-    let reached = linked("reached", "\"string lights\" [ \"key\" ]", 5.0, "");
+    let reached = linked("reached", "\"string lights\" [ \"key\" \"fill\" ]", 5.0, "");
     let all = linked("reached", "", 5.0, "");
     let pixels = |scene| luminance(&render_passes(scene, 0..8));
     expect_equal_pixels("all groups are named", &pixels(&reached), &pixels(&all), 1e-4);
