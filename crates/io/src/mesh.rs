@@ -16,7 +16,7 @@ pub fn compute_normals(mesh: &mut LoadedMesh) {
             let to = |j: usize| (corners[(i + j) % 3] - corners[i]).try_normalized();
             let (Some(a), Some(b)) = (to(1), to(2)) else { continue };
             let sum = &mut sums[triangle[i] as usize];
-            *sum = *sum + normal * a.angle_between(b);
+            *sum += normal * a.angle_between(b);
         }
     }
     let up = Vector3::new(0.0, 0.0, 1.0);

@@ -253,7 +253,7 @@ impl<'e> Reader<'e> {
         let both = self.pass_number(bsdf, "alpha", material, &name("roughness"));
         let u = self.pass_number(bsdf, "alpha_u", material, &name("uroughness"));
         let v = self.pass_number(bsdf, "alpha_v", material, &name("vroughness"));
-        if !both && !(u && v) {
+        if !(both || u && v) {
             material.parameters.push(parameter(&name("roughness"), Value::Floats(vec![default]), bsdf.span));
         }
         material.parameters.push(parameter("remaproughness", Value::Bools(vec![false]), bsdf.span));
@@ -321,15 +321,16 @@ impl<'e> Reader<'e> {
         let eta = self.pass_color(bsdf, "eta", &mut material, "eta");
         let k = self.pass_color(bsdf, "k", &mut material, "k");
         let (name, span) = self.string(bsdf, "material").unwrap_or(("none", bsdf.span));
-        let has_material = Self::has(bsdf, "material") || self.is_legacy;
-        if name == "none" && !(eta && k) && !(self.is_legacy && !Self::has(bsdf, "material")) {
-            // A perfect mirror, of the colour that is given.
+        // Without any, version 3 means a mirror and those before it copper.
+        let is_mirror = name == "none" && (!self.is_legacy || Self::has(bsdf, "material"));
+        if eta && k {
+            // Given by numbers.
+        } else if is_mirror {
             if !self.pass_color(bsdf, "specular_reflectance", &mut material, "reflectance") {
                 material.parameters.push(parameter("reflectance", Value::Rgb(vec![[1.0; 3]]), span));
             }
-        } else if !(eta && k) && has_material {
-            let name = if name == "none" { "Cu" } else { name };
-            self.pass_metal(name, span, &mut material);
+        } else {
+            self.pass_metal(if name == "none" { "Cu" } else { name }, span, &mut material);
         }
         self.ignore(bsdf, &["ext_eta"], "the metal is taken to be in air");
         self.ignore_factors(bsdf);

@@ -105,7 +105,7 @@ fn smooth_normals(obj: &ObjFile) -> SmoothNormals {
             let to = |j: usize| (at(i + j) - at(i)).try_normalized();
             let (Some(a), Some(b)) = (to(1), to(corners.len() - 1)) else { continue };
             let sum = sums.entry((corner.position, face.group)).or_default();
-            *sum = *sum + normal * a.angle_between(b);
+            *sum += normal * a.angle_between(b);
         }
     }
     sums
