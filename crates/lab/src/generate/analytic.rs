@@ -23,7 +23,7 @@ pub(super) const FURNACE: Generator = Generator {
 
 fn corner(_: &Settings) -> Files {
     let frame =
-        Frame { name: "corner", resolution: [512, 512], exposure_s: 0.012, samples: 256, max_depth: 8 };
+        Frame { name: "corner", resolution: [512, 512], exposure_s: 0.03, samples: 256, max_depth: 8 };
     let text = format!(
         r#"# A corner of three walls, one of them black, lit by a small lamp, with a thin plate before one wall (SPEC SCENE-36).
 #

@@ -16,6 +16,7 @@ mod sun;
 
 mod analytic;
 mod boxes;
+mod bunnies;
 mod car;
 mod caustics;
 mod cognac;
@@ -27,6 +28,7 @@ mod interior;
 mod mountain;
 mod plan;
 mod rooms;
+mod shapes;
 mod shared;
 mod small_box;
 
@@ -102,6 +104,7 @@ pub const GENERATORS: &[Generator] = &[
     glass::WOOD_BALL,
     boxes::FRACTAL,
     boxes::WATER,
+    bunnies::GENERATOR,
     mountain::GENERATOR,
     courtyard::GENERATOR,
     caustics::RING,
@@ -112,6 +115,7 @@ pub const GENERATORS: &[Generator] = &[
     glass::LENS,
     cognac::PENUMBRA,
     incident::GENERATOR,
+    shapes::GENERATOR,
     analytic::CORNER,
     analytic::FURNACE,
     depth_of_field::GENERATOR,

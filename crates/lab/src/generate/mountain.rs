@@ -144,7 +144,7 @@ fn generate(settings: &Settings) -> Files {
 # Lengths are in metres; x grows to the right, y upwards, z into the picture. The terrain is 6 km wide.
 
 LookAt {x} {eye} {z}   120 {target} 700   0 1 0
-Camera "perspective" "float fov" [ 40 ]
+Camera "perspective" "float fov" [ 46 ]
 {frame}
 WorldBegin
 
@@ -160,7 +160,7 @@ Material "diffuse" "rgb reflectance" [ 0.06 0.12 0.045 ]
         all_stored = n_ground + stored,
         x = EYE[0],
         z = EYE[1],
-        target = eye + 430.0,
+        target = eye + 490.0,
         frame = frame.text(),
         light = sun::light(sun),
         objects = (1..=kinds.len())

@@ -13,15 +13,10 @@ pub(super) const GENERATOR: Generator = Generator {
 };
 
 fn generate(_: &Settings) -> Files {
-    let frame = Frame {
-        name: "formulas",
-        resolution: [800, 400],
-        exposure_s: 0.008,
-        samples: 256,
-        max_depth: 12,
-    };
+    let frame =
+        Frame { name: "formulas", resolution: [800, 400], exposure_s: 0.008, samples: 256, max_depth: 12 };
     let text = format!(
-        r#"# Surfaces given by formulas (SPEC SCENE-32): quadrics and a torus, two implicit surfaces, a parametric one, and a mirror.
+        r#"# Surfaces given by formulas (SPEC SCENE-32): quadrics and a torus, an implicit surface, a parametric one, and a mirror.
 #
 # Lengths are in metres; z points up, x to the right of the picture.
 #   mirror   the paraboloid z = (x^2 + y^2) / 4 f with f = 0.25, and a white target of radius 0.03 at its focus: all light
@@ -58,21 +53,20 @@ AttributeBegin
   Rotate 20 1 0 0
   Shape "torus" "float majorradius" [ 0.4 ] "float minorradius" [ 0.15 ]
 AttributeEnd
-# A cup: an elliptic paraboloid would do as well.
 Material "coateddiffuse" "rgb reflectance" [ 0.2 0.5 0.25 ] "float roughness" [ 0.05 ]
 AttributeBegin
   Translate -0.45 -0.7 0
   Shape "paraboloid" "float radius" [ 0.3 ] "float zmin" [ 0 ] "float zmax" [ 0.6 ]
 AttributeEnd
 
-# Implicit: a blob of three balls that melt into each other, and a gyroid within a ball.
+# Implicit: a blob of three balls that melt into each other.
 Material "coateddiffuse" "rgb reflectance" [ 0.25 0.3 0.65 ] "float roughness" [ 0.05 ]
 AttributeBegin
   Translate 0.45 -0.6 0.36
   Shape "implicit" "point3 bounds" [ -0.6 -0.6 -0.6  0.6 0.6 0.6 ]
-    "string function" "exp(-14*((x-0.16)^2+y^2+z^2)) + exp(-14*((x+0.16)^2+y^2+(z-0.1)^2)) + exp(-18*(x^2+(y+0.1)^2+(z-0.34)^2)) - 0.35"
+    "string function" "0.35 - exp(-14*((x-0.16)^2+y^2+z^2)) - exp(-14*((x+0.16)^2+y^2+(z-0.1)^2)) - exp(-18*(x^2+(y+0.1)^2+(z-0.34)^2))"
 AttributeEnd
-# Parametric: Steiner's Roman surface is left to the reader; this is a shell.
+# Parametric: the shell of a snail.
 Material "coateddiffuse" "rgb reflectance" [ 0.65 0.35 0.45 ] "float roughness" [ 0.05 ]
 AttributeBegin
   Translate 0.3 0.8 0.35
