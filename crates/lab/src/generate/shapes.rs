@@ -18,7 +18,7 @@ fn generate(_: &Settings) -> Files {
     let text = format!(
         r#"# Surfaces given by formulas (SPEC SCENE-32): quadrics and a torus, an implicit surface, a parametric one, and a mirror.
 #
-# Lengths are in metres; z points up, x to the right of the picture.
+# Lengths are in metres; z points up, x to the left of the picture.
 #   mirror   the paraboloid z = (x^2 + y^2) / 4 f with f = 0.25, and a white target of radius 0.03 at its focus: all light
 #            that comes along the axis meets there (SPEC GEO-6). The lamp is a small ball on the axis, 20 m away.
 
