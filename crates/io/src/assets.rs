@@ -53,7 +53,7 @@ enum Loaded {
     Image(Arc<Texels>),
     Spectrum(Vec<[f32; 2]>),
     Brdf(BrdfGrid),
-    Measured(MeasuredBrdf),
+    Measured(Arc<MeasuredBrdf>),
     Lens(LensPrescription),
     Luminaire(Photometry),
     Contours(Contours),
@@ -94,7 +94,7 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
                 assets.brdfs.insert(name, grid);
             }
             Ok(Loaded::Measured(brdf)) => {
-                assets.measured.insert(name, Arc::new(brdf));
+                assets.measured.insert(name, brdf);
             }
             Ok(Loaded::Lens(lens)) => {
                 assets.lenses.insert(name, Arc::new(lens));
@@ -158,7 +158,9 @@ fn decode(kind: Kind, bytes: &[u8]) -> Result<Loaded, String> {
         }
         Kind::Brdf => read_brdf_table(bytes).map(Loaded::Brdf).map_err(|error| error.to_string()),
         Kind::Contours => read_contours(bytes).map(Loaded::Contours).map_err(|error| error.to_string()),
-        Kind::Measured => read_measured(bytes).map(Loaded::Measured).map_err(|error| error.to_string()),
+        Kind::Measured => read_measured(bytes)
+            .map(|brdf| Loaded::Measured(Arc::new(brdf)))
+            .map_err(|error| error.to_string()),
         Kind::Lens => read_lens(bytes).map(Loaded::Lens).map_err(|error| error.to_string()),
         Kind::Spectrum | Kind::Image => {
             read_spd(bytes).map(Loaded::Spectrum).map_err(|error| error.to_string())

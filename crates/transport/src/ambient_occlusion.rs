@@ -82,7 +82,7 @@ impl OcclusionSettings {
     /// Reads the parameters of an integrator entity.
     pub fn from_parameters(p: &mut Parameters<'_, '_>) -> Self {
         let mut max_distance = p.float("maxdistance", f32::INFINITY);
-        if !(max_distance > 0.0) {
+        if max_distance.is_nan() || max_distance <= 0.0 {
             let span = p.span_of("maxdistance");
             let message = format!("\"maxdistance\" must be positive, not {max_distance}");
             p.diagnostics().error(span, message);

@@ -88,7 +88,11 @@ fn unknown_names() {
 /// A name with nothing like it comes with the list of those that are known.
 #[test]
 fn unlike_names_are_answered_by_the_list() {
-    refuse_option("Camera \"telescope\"", 8, &["known are: orthographic, perspective, spherical"]);
+    refuse_option(
+        "Camera \"telescope\"",
+        8,
+        &["known are: fisheye, orthographic, perspective, realistic, spherical"],
+    );
     refuse_world("LightSource \"chandelier\"", (1, 13), &["known are: ", "goniometric", "point", "spot"]);
 }
 

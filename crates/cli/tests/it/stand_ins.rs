@@ -68,13 +68,6 @@ fn materials() {
     accept("", &format!("Material {entity}\n{SPHERE}"), "7:10", &["grey \"diffuse\" stands in for it"]);
 }
 
-/// Shapes are left out; the others are there.
-#[test]
-fn shapes() {
-    let curve = "Shape \"curve\" \"point3 P\" [ 0 0 3 1 1 3 2 2 3 3 3 3 ] \"string type\" \"cylinder\" \"float width\" 1";
-    accept("", &format!("{curve}\n{SPHERE}"), "7:7", &["the shape \"curve\"", "left out"]);
-}
-
 /// Textures that other programs store.
 #[test]
 fn textures() {

@@ -206,7 +206,7 @@ fn awkward_ray(rng: &mut Rng, geometry: &Geometry, size: f32) -> Ray {
         }
         7 => {
             if let Some(hit) = geometry.intersect(&free, f32::INFINITY, &any) {
-                free.origin = free.origin + free.direction * hit.t;
+                free.origin += free.direction * hit.t;
                 free.direction = direction(rng);
             }
         }
@@ -217,7 +217,7 @@ fn awkward_ray(rng: &mut Rng, geometry: &Geometry, size: f32) -> Ray {
 
 /// Refuses some primitives, as alpha textures do.
 fn some(hit: &Hit) -> bool {
-    (hit.primitive ^ hit.geometry.0 ^ hit.instance) % 3 != 0
+    !(hit.primitive ^ hit.geometry.0 ^ hit.instance).is_multiple_of(3)
 }
 
 /// Compares hits of all structures with those of testing everything.

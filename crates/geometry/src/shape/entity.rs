@@ -99,7 +99,7 @@ impl Entity {
             }
             Shape::Implicit(surface) => {
                 let implicit = Implicit::new(surface, map, reverse_orientation);
-                Self::Traced(Box::new(Traced::Implicit(implicit)))
+                Self::Traced(Box::new(Traced::Implicit(Box::new(implicit))))
             }
             Shape::Torus { major_radius, minor_radius, theta_min_rad, theta_max_rad, phi_max_rad } => {
                 let theta = [theta_min_rad.into(), theta_max_rad.into()];

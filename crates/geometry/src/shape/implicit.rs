@@ -73,8 +73,8 @@ impl ImplicitSurface {
         }
         let (middle, half) = (0.5 * (min + max), 0.5 * (max - min));
         if let Some(lipschitz) = self.lipschitz {
-            return !(self.function.value(middle.to_array()).abs()
-                > lipschitz * half.length() * (1.0 + 1e-9));
+            let distance = self.function.value(middle.to_array()).abs();
+            return distance.is_nan() || distance <= lipschitz * half.length() * (1.0 + 1e-9);
         }
         let sides = std::array::from_fn(|axis| Interval::new(min[axis], max[axis]));
         let (range, slopes) = self.function.gradient_range(sides);

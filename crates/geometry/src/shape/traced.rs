@@ -23,7 +23,7 @@ pub(crate) enum Traced {
     /// Points with normals.
     Cloud(Cloud),
     /// The zeros of a formula.
-    Implicit(Implicit),
+    Implicit(Box<Implicit>),
 }
 
 impl Traced {

@@ -74,10 +74,11 @@ impl<'a> Reader<'a> {
             let normal = |v: &u32| morphed(&normals, 1, *v).as_normal();
             mesh.normals = vertices.iter().map(normal).collect();
         }
-        if wanted.tangents && !mesh.normals.is_empty() {
-            if let Some(tangents) = self.attribute(&attributes, "TANGENT", &[3, 4], Some(n)) {
-                mesh.tangents = vertices.iter().map(|v| morphed(&tangents, 2, *v)).collect();
-            }
+        if wanted.tangents
+            && !mesh.normals.is_empty()
+            && let Some(tangents) = self.attribute(&attributes, "TANGENT", &[3, 4], Some(n))
+        {
+            mesh.tangents = vertices.iter().map(|v| morphed(&tangents, 2, *v)).collect();
         }
         let name = format!("TEXCOORD_{}", wanted.texcoord);
         if let Some(uvs) = self.attribute(&attributes, &name, &[2], Some(n)) {

@@ -80,7 +80,8 @@ impl Interval {
 
     /// A function with a maximum of 1 at `peak`, a minimum of -1 half a turn from there, and the period 2 pi.
     fn wave(self, f: impl Fn(f64) -> f64, peak: f64) -> Self {
-        if !(self.high - self.low < TAU) || self.magnitude() > 1e9 {
+        let width = self.high - self.low;
+        if width.is_nan() || width >= TAU || self.magnitude() > 1e9 {
             return Self { low: -1.0, high: 1.0 };
         }
         // Peaks just outside count too: rounding may hide them.

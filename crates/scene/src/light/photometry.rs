@@ -152,7 +152,7 @@ fn check_ranges(web: PhotometricWeb, vertical: &[f32], first: f32, last: f32) ->
         if !within(0.0, 180.0) {
             return Err("vertical angles of type C lie between 0 and 180");
         }
-        let is_known = first == 0.0 && (last == 0.0 || last == 90.0 || last >= 180.0 && last <= 360.0)
+        let is_known = first == 0.0 && (last == 0.0 || last == 90.0 || (180.0..=360.0).contains(&last))
             || first == 90.0 && last == 270.0;
         return if is_known {
             Ok(())

@@ -59,7 +59,7 @@ mod tests {
         let (mut mean, mut n_points) = (Vector3::splat(0.0), 0);
         for _ in 0..n {
             let (w, tries) = sample_sphere_by_rejection(&mut rng);
-            mean = mean + w / n as f32;
+            mean += w / n as f32;
             n_points += tries;
         }
         // Each component of a direction has the variance 1/3; tries are geometric.

@@ -10,7 +10,7 @@ use crate::support::{Setup, channel, expect_mean, luminance, render_passes};
 fn occluded(name: &str, setup: &Setup<'_>, parameters: &[(&'static str, Value)]) -> Scene {
     let mut scene = setup.scene(name);
     scene.integrator =
-        parameters.iter().fold(Entity::new("ao"), |entity, (name, v)| entity.with(*name, v.clone()));
+        parameters.iter().fold(Entity::new("ao"), |entity, (name, v)| entity.with(name, v.clone()));
     scene
 }
 

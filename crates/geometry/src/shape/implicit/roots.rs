@@ -115,7 +115,7 @@ fn move_front(line: &impl Line, part: &mut Part, slope: Interval, finest: f64) -
         return None;
     }
     let to = part.a + step;
-    if !(to < part.b) {
+    if to.is_nan() || to >= part.b {
         if part.changes_sign() {
             return Some(refine(line, *part, finest));
         }
@@ -133,7 +133,7 @@ fn move_front(line: &impl Line, part: &mut Part, slope: Interval, finest: f64) -
 /// Moves the end of a part back to where the slopes last allow a zero; false if they allow none.
 fn move_end(line: &impl Line, part: &mut Part, slope: Interval) -> bool {
     let b = part.b - without_root(part.fb, -slope.high, -slope.low);
-    if !(part.a <= b) {
+    if b.is_nan() || part.a > b {
         return part.changes_sign();
     }
     let value = line.value(b);

@@ -265,39 +265,3 @@ fn a_radius_bounds_the_surface() {
     let t = |x: f32| at(&plane, [x, 0.0, 1.0], [0.0, 0.0, -1.0]).map(|(hit, _)| hit.t);
     assert_eq!((t(0.49), t(-0.49), t(0.51)), (Some(1.0), Some(1.0), None));
 }
-
-/// Not a test: figures of speed, printed with `--nocapture --ignored`.
-#[test]
-#[ignore = "prints times"]
-fn speed() {
-    for (text, lipschitz) in [
-        (TORUS, None),
-        (BARTH, None),
-        (GYROID, None),
-        (BLOBS, None),
-        (HEART, None),
-        (BOX, None),
-        (SDF, None),
-        (SDF, Some(1.0)),
-        (SHELL, None),
-        (SHELL, Some(1.0)),
-    ] {
-        let start = std::time::Instant::now();
-        let shape = implicit(text, 1.35, lipschitz);
-        let built = start.elapsed().as_secs_f64();
-        let Shape::Implicit(surface) = &shape else { panic!("it is one") };
-        let n_cells = surface.n_cells();
-        let (geometry, _) = single(shape, Transform::IDENTITY, false);
-        let mut rng = Rng::new(1, 0);
-        let rays: Vec<Ray> = (0..20_000)
-            .map(|_| {
-                let from = Point3::ORIGIN + direction(&mut rng) * 4.0;
-                Ray::new(from, (point_in_cube(&mut rng, 1.2) - from).normalized())
-            })
-            .collect();
-        let start = std::time::Instant::now();
-        let n = rays.iter().filter(|ray| geometry.intersect(ray, f32::INFINITY, &any).is_some()).count();
-        let rate = rays.len() as f64 / start.elapsed().as_secs_f64();
-        println!("{built:.2} s, {n_cells} cells, {rate:.0} rays/s, {n} hits: {text} {lipschitz:?}");
-    }
-}

@@ -99,7 +99,7 @@ fn accessors() {
     );
     check("\"byteOffset\": 36", "\"byteOffset\": 14", "/meshes/0/primitives/0/indices: index");
     check("\"byteOffset\": 36", "\"byteOffset\": 44", "/bufferViews/1: bytes 44 to 44 + 6 are beyond");
-    check("\"byteLength\": 42", "\"byteLength\": 4200", "/buffers/0: the buffer should have 4800 bytes");
+    check("\"byteLength\": 42", "\"byteLength\": 4200", "/buffers/0: the buffer should have 4200 bytes");
     check(
         "\"byteLength\": 42",
         "\"byteLength\": 42, \"uri\": \"no.bin\"",

@@ -151,7 +151,7 @@ fn accelerators_are_chosen() {
     let fine = Entity::new("grid").with("density", floats(&[1e9]));
     check(fine, Accelerator::Grid { density: 64.0 }, "but is 1000000000; 64 is taken");
     assert_helps(
-        &error_here(&with(Entity::new("binarybvh").with("splitmethod", strings(&["shea"]))), "splitmethod"),
+        &error_here(&with(Entity::new("binarybvh").with("splitmethod", strings(&["sahh"]))), "splitmethod"),
         "did you mean \"sah\"?",
     );
     error_here(&with(kd_tree("maxdepth", integers(&[-7]))), "must not be negative");

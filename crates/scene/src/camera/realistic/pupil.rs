@@ -105,7 +105,7 @@ fn find_pupil(barrel: &Barrel, film: Point3) -> Option<Bounds2> {
             let closer = open_cells(barrel, film, bounds, widened(step))?;
             let gain = closer.area() / bounds.area();
             bounds = closer;
-            if !(gain < 0.7) {
+            if gain.is_nan() || gain >= 0.7 {
                 break;
             }
         }

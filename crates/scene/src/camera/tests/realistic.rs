@@ -253,7 +253,7 @@ fn problems_of_lenses_are_reported() {
     let file = |name: &str| ("lensfile", Value::Strings(vec![name.to_owned()]));
     let float = |name: &'static str, x: f32| (name, Value::Floats(vec![x]));
     let sound = file("a.txt");
-    assert_eq!(problems(&[sound.clone()]), 0);
+    assert_eq!(problems(std::slice::from_ref(&sound)), 0);
     assert_eq!(problems(&[]), 1, "no file");
     assert_eq!(problems(&[file("b.txt")]), 1, "no such lens");
     assert_eq!(problems(&[file("broken.txt")]), 0, "reported where it was read");

@@ -200,7 +200,7 @@ impl<'a> Orders<'a> {
                         (field[k][i] * basis.weights[i], field[k][N_NODES + i] * basis.weights[i]);
                     let y = basis.at(m, i);
                     for l in m..N_LEGENDRE {
-                        let sign = if (l + m) % 2 == 0 { up } else { -up };
+                        let sign = if (l + m).is_multiple_of(2) { up } else { -up };
                         moments[l] += 0.5 * y[l] * (down + sign);
                     }
                 }
@@ -215,7 +215,7 @@ impl<'a> Orders<'a> {
         for l in m..N_LEGENDRE {
             let [a, b] = Self::phase_coefficients(l);
             let strength = (molecules * a + haze * b) * moment(l);
-            let sign = if (l + m) % 2 == 0 { strength } else { -strength };
+            let sign = if (l + m).is_multiple_of(2) { strength } else { -strength };
             for i in 0..N_NODES {
                 let y = self.basis.at(m, i)[l];
                 source[i] += strength * y;

@@ -70,16 +70,19 @@ fn tables_list_what_is_asked_for() {
                 let given = match (spec.name, spec.kind) {
                     ("filename", _) => strings("a.png"),
                     ("mapping", _) => strings("planar"),
-                    ("wrap", _) => strings("clamp"),
+                    ("wrap" | "wrapv", _) => strings("clamp"),
+                    ("channel", _) => strings("g"),
+                    ("name", _) => strings("vertex_color"),
                     ("filter", _) => strings("EWA"),
                     ("encoding", _) => strings("gamma 2.2"),
                     (_, "integer") => Value::Integers(vec![3]),
                     (_, "bool") => Value::Bools(vec![true]),
                     (_, "vector3") => Value::Vectors3(vec![Vector3::new(0.0, 0.0, 1.0)]),
+                    (_, "rgb") => Value::Rgb(vec![[0.5; 3]]),
                     _ => floats(&[0.5]),
                 };
                 // These belong to other mappings than the planar one, or to fewer dimensions.
-                if matches!(spec.name, "uscale" | "vscale" | "dimension") {
+                if matches!(spec.name, "uscale" | "vscale" | "uvrotation" | "dimension") {
                     continue;
                 }
                 entity = entity.with(spec.name, given);
