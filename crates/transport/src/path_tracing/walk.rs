@@ -110,7 +110,7 @@ impl<'s> Walk<'s> {
 
     /// Goes to the next surface that the path may scatter at, adding the emission on the way and of the surface itself;
     /// `None` if the path ends before.
-    #[inline]
+    #[inline(always)]
     pub(super) fn arrive(
         &mut self,
         tracer: &Tracer<'_>,
