@@ -3,9 +3,11 @@
 use etendue_geometry::{Curve, CurveBasis, CurveKind, CurveSet, bezier_segments};
 use etendue_math::Normal3;
 
-use crate::document::ShapeEntity;
+use crate::controls::SHAPE_CONTROLS;
+use crate::document::{ShapeEntity, Value};
 use crate::parameters::{ParameterSpec, Parameters, spec};
 
+use super::emitters::parameter;
 use super::shapes::ALPHA;
 
 /// Parameters of `curve`.
@@ -36,6 +38,17 @@ pub(super) fn belong_together(a: &ShapeEntity, b: &ShapeEntity) -> bool {
         && a.material == b.material
         && a.world_from_object == b.world_from_object
         && a.reverse_orientation == b.reverse_orientation
+        && SHAPE_CONTROLS.iter().all(|control| have_same_control(a, b, control.name))
+}
+
+/// True if two shapes say the same of a switch. Problems of values are left to where one is read: such shapes stay apart.
+fn have_same_control(a: &ShapeEntity, b: &ShapeEntity, name: &str) -> bool {
+    match (parameter(a, name), parameter(b, name)) {
+        (None, None) => true,
+        (Some(Value::Bools(a)), Some(Value::Bools(b))) => a == b,
+        (Some(Value::Strings(a)), Some(Value::Strings(b))) => a == b,
+        _ => false,
+    }
 }
 
 pub(super) fn read_curves(p: &mut Parameters<'_, '_>) -> Option<CurveSet> {

@@ -1,73 +1,133 @@
 //! Emissive shapes of objects: they become shapes of the world, one for each instance, for a light has one place.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 
 use etendue_math::AnimatedTransform;
 
 use crate::assets::Assets;
 use crate::document::{Document, ShapeEntity, Value};
 
+use super::motion::{FILENAME_1, P1};
+
 /// The most primitives that copies may have together: a light of each is about 200 bytes.
 const MAX_PRIMITIVES: usize = 4_000_000;
 
-/// What a shape counts whose primitives are not known yet.
+/// What a shape counts whose primitives are not known before it is built.
 const MANY: usize = 100_000;
 
-/// The document with the emissive shapes of its objects in their places in the world. Instances or shapes that move, and
-/// copies beyond four million primitives, leave it as it is; then such shapes stay dark, and a warning says so where they
-/// are added.
+/// Faces in which a surface of revolution is turned by default, and pieces of its curve between two points.
+const N_SECTORS: usize = 256;
+const N_PIECES: usize = 16;
+
+/// The document with the emissive shapes of its objects in their places in the world. Objects of which an instance moves, and
+/// those with whose copies there would be more than four million primitives, are left as they are, and so are shapes that
+/// move within their object and those that cannot emit: they stay dark, and a warning says so where they are added.
 pub(super) fn place_emitters<'d>(document: &'d Document, assets: &Assets) -> Cow<'d, Document> {
-    let mut placed = Vec::new();
-    let mut n_primitives = 0_usize;
+    let mut uses: HashMap<&str, Uses> = HashMap::new();
     for instance in &document.instances {
-        let object = document.objects.iter().find(|object| object.name == instance.object);
-        let emitters =
-            object.iter().flat_map(|object| &object.shapes).filter(|shape| shape.area_light.is_some());
-        for shape in emitters {
-            if instance.world_from_instance.is_animated() || shape.world_from_object.is_animated() {
-                return Cow::Borrowed(document);
-            }
-            n_primitives = n_primitives.saturating_add(count_primitives(shape, assets));
-            if n_primitives > MAX_PRIMITIVES {
-                return Cow::Borrowed(document);
-            }
-            let place = instance.world_from_instance.start * shape.world_from_object.start;
-            placed.push((shape, AnimatedTransform::constant(place)));
+        let uses = uses.entry(&instance.object).or_default();
+        uses.n += 1;
+        uses.is_moving |= instance.world_from_instance.is_animated();
+    }
+    let mut n_primitives = 0_usize;
+    let mut emitters: HashMap<&str, Vec<&ShapeEntity>> = HashMap::new();
+    for object in &document.objects {
+        let uses = uses.get(object.name.as_str()).copied().unwrap_or_default();
+        let found: Vec<&ShapeEntity> = object.shapes.iter().filter(|shape| is_emitter(shape)).collect();
+        if uses.is_moving || found.is_empty() || emitters.contains_key(object.name.as_str()) {
+            continue;
+        }
+        let n_each =
+            found.iter().fold(0, |n: usize, shape| n.saturating_add(count_primitives(shape, assets)));
+        let n_with = n_primitives.saturating_add(n_each.saturating_mul(uses.n));
+        if n_with <= MAX_PRIMITIVES {
+            n_primitives = n_with;
+            emitters.insert(&object.name, found);
         }
     }
-    if placed.is_empty() {
+    let placed = document.instances.iter().flat_map(|instance| {
+        let place = instance.world_from_instance.start;
+        emitters.get(instance.object.as_str()).into_iter().flatten().map(move |shape| (place, *shape))
+    });
+    let copies: Vec<ShapeEntity> = placed
+        .map(|(place, shape)| ShapeEntity {
+            world_from_object: AnimatedTransform::constant(place * shape.world_from_object.start),
+            ..shape.clone()
+        })
+        .collect();
+    if copies.is_empty() {
         return Cow::Borrowed(document);
     }
-    let copy =
-        |(shape, world_from_object): (&ShapeEntity, _)| ShapeEntity { world_from_object, ..shape.clone() };
-    let copies: Vec<ShapeEntity> = placed.into_iter().map(copy).collect();
-    let mut document = document.clone();
-    for object in &mut document.objects {
-        object.shapes.retain(|shape| shape.area_light.is_none());
+    let mut changed = document.clone();
+    for object in &mut changed.objects {
+        if emitters.contains_key(object.name.as_str()) {
+            object.shapes.retain(|shape| !is_emitter(shape));
+        }
     }
-    document.shapes.extend(copies);
-    Cow::Owned(document)
+    changed.shapes.extend(copies);
+    Cow::Owned(changed)
+}
+
+/// How an object is used.
+#[derive(Clone, Copy, Debug, Default)]
+struct Uses {
+    n: usize,
+    is_moving: bool,
+}
+
+/// True for a shape that emits where it stands in the world.
+fn is_emitter(shape: &ShapeEntity) -> bool {
+    shape.area_light.is_some()
+        && !shape.world_from_object.is_animated()
+        && !matches!(shape.entity.type_name.as_str(), "curve" | "points" | "implicit")
+        && [P1, FILENAME_1].iter().all(|end| parameter(shape, end.name).is_none())
+}
+
+/// The value of a parameter as the entity gives it.
+pub(super) fn parameter<'s>(shape: &'s ShapeEntity, name: &str) -> Option<&'s Value> {
+    shape.entity.parameters.iter().find(|p| p.name == name).map(|p| &p.value)
 }
 
 /// About how many primitives a shape has.
 fn count_primitives(shape: &ShapeEntity, assets: &Assets) -> usize {
-    let parameter = |name: &str| shape.entity.parameters.iter().find(|p| p.name == name).map(|p| &p.value);
-    let loaded = match parameter("filename") {
-        Some(Value::Strings(names)) => names.first().and_then(|name| assets.meshes.get(name)),
+    let integer = |name: &str, default: i32| match parameter(shape, name) {
+        Some(Value::Integers(values)) => values.first().copied().unwrap_or(default),
+        _ => default,
+    };
+    // Each step of subdivision makes four faces of one.
+    let subdivided = |n: usize, levels: i32| n.saturating_mul(1 << (2 * levels.clamp(0, 15)));
+    let filename = match parameter(shape, "filename") {
+        Some(Value::Strings(names)) => names.first(),
         _ => None,
     };
-    if let Some(mesh) = loaded {
-        return mesh.triangles.len() + mesh.quads.len();
-    }
-    let n_faces = match parameter("indices") {
-        Some(Value::Integers(indices)) => indices.len() / 3 + 1,
+    let n_faces = match (filename.and_then(|name| assets.meshes.get(name)), parameter(shape, "indices")) {
+        (Some(mesh), _) => mesh.triangles.len() + mesh.quads.len(),
+        (None, Some(Value::Integers(indices))) => indices.len() / 3 + 1,
         _ => 1,
     };
     match shape.entity.type_name.as_str() {
-        _ if parameter("displacement").is_some() => MANY,
-        "trianglemesh" | "plymesh" | "bilinearmesh" => n_faces,
-        "sphere" | "disk" | "cylinder" | "cone" | "paraboloid" | "hyperboloid" | "torus" | "plane" => 1,
-        // Shapes that are made of triangles when they are built.
-        _ => n_faces.saturating_mul(MANY),
+        "loopsubdiv" => subdivided(n_faces, integer("levels", 3)),
+        "fractal" => subdivided(n_faces, integer("levels", 5)),
+        "heightfield" => match (parameter(shape, "z"), filename.and_then(|name| assets.images.get(name))) {
+            (Some(Value::Floats(heights)), _) => 2 * heights.len(),
+            (None, Some(_)) => MANY.saturating_mul(10),
+            _ => subdivided(2, integer("levels", 8)),
+        },
+        "revolution" => {
+            let n_points = match (parameter(shape, "contour"), filename.and_then(|n| assets.contours.get(n)))
+            {
+                (Some(Value::Points2(points)), _) => points.len(),
+                (_, Some(contours)) => contours.0.iter().map(|(_, contour)| contour.len()).sum(),
+                _ => 1,
+            };
+            match parameter(shape, "tolerance") {
+                Some(_) => MANY.max(2 * N_SECTORS * n_points),
+                None => (2 * N_SECTORS * N_PIECES).saturating_mul(n_points),
+            }
+        }
+        "parametric" => MANY.min(integer("maxtriangles", i32::MAX).max(1) as usize),
+        "trianglemesh" | "plymesh" if parameter(shape, "displacement").is_some() => MANY.max(n_faces),
+        _ => n_faces,
     }
 }

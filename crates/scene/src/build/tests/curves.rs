@@ -29,6 +29,22 @@ fn neighbouring_curves_are_one_geometry() {
     assert!(below(&scene, 0.5, 2.5).is_none());
 }
 
+/// Strands that say the same of switches are one geometry; others keep their own.
+#[test]
+fn curves_keep_their_switches() {
+    let strand = |y: f32| curve(&LINE.map(|[x, _, z]| [x, y, z]));
+    let off = |y: f32| strand(y).with("castscaustics", Value::Bools(vec![false]));
+    let linked = |y: f32| strand(y).with("lights", strings(&["key"]));
+    let mut document =
+        lit_with([strand(0.0), off(1.0), off(2.0), linked(3.0), linked(4.0)].map(shape).into());
+    document.lights[0].entity = document.lights[0].entity.clone().with("group", strings(&["key"]));
+    let scene = scene(&document);
+    let controls = scene.controls.as_ref().expect("switches are used");
+    assert_eq!(scene.attributes.len(), 3);
+    let casts = [0, 1, 2].map(|id| controls.shape(etendue_geometry::GeometryId(id)).casts_caustics);
+    assert_eq!(casts, [true, false, true]);
+}
+
 /// What makes no curve is an error at the curve.
 #[test]
 fn impossible_curves_are_errors() {

@@ -103,6 +103,40 @@ fn emissive_shapes_of_instances_are_lights() {
     assert_eq!(places, [-5.0, 5.0, 50.0]);
 }
 
+/// What moves in one object, or is too much of one, leaves the lamps of others alight.
+#[test]
+fn emissive_shapes_are_judged_by_object() {
+    let emitter = |entity: Entity| ShapeEntity { area_light: Some(0), ..shape(here(entity)) };
+    let dense = || {
+        let p = points(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        Entity::new("loopsubdiv").with("P", p).with("indices", integers(&[0, 1, 2]))
+    };
+    let curve = Entity::new("curve").with("P", points(&[[0.0; 3], [0.1; 3], [0.2; 3], [0.3; 3]]));
+    let wandering = ShapeEntity { world_from_object: moving(), ..emitter(Entity::new("sphere")) };
+    let mut document = Document { area_lights: vec![lamp()], ..lit() };
+    document.lights.clear();
+    for (name, shapes, place, n) in [
+        ("moves", vec![emitter(Entity::new("sphere"))], moving(), 1),
+        ("dense", vec![emitter(dense().with("levels", integers(&[10])))], still(Transform::IDENTITY), 3),
+        ("fine", vec![emitter(dense())], still(Transform::IDENTITY), 1),
+        (
+            "still",
+            vec![emitter(Entity::new("sphere")), wandering, emitter(curve)],
+            still(Transform::IDENTITY),
+            3,
+        ),
+    ] {
+        document.objects.push(ObjectEntity { name: name.to_owned(), span: None, shapes });
+        for _ in 0..n {
+            let (object, world_from_instance) = (name.to_owned(), place);
+            document.instances.push(InstanceEntity { object, span: None, world_from_instance });
+        }
+    }
+    let document = crate::build::emitters::place_emitters(&document, &Assets::default()).into_owned();
+    let left: Vec<usize> = document.objects.iter().map(|object| object.shapes.len()).collect();
+    assert_eq!((left, document.shapes.len()), (vec![1, 1, 0, 2], 1 + 3));
+}
+
 /// A scene without light is black, which is seldom meant.
 #[test]
 fn darkness_is_a_warning() {
