@@ -84,7 +84,7 @@ impl Realistic {
     /// True if some light gets from the scene to some point of the film.
     #[must_use]
     pub fn is_open(&self) -> bool {
-        self.pupils.is_open()
+        self.pupils.is_open() && self.barrel.has_opening()
     }
 
     /// Width and height of the film in metres.

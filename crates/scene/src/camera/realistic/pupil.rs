@@ -1,8 +1,12 @@
 //! Where on the rear plane light gets through: the bounds of the exit pupil by distance from the axis.
 //!
-//! A pupil is a convex spot of the plane through the rear vertex, small if the stop is, and often far from the middle of the
-//! rear surface. It is searched for by a grid that closes in on it, through a stop that is opened wide first if the grid finds
-//! nothing, and closed step by step.
+//! A pupil is a spot of the plane through the rear vertex, nearly convex, small if the stop is, and often far from the middle
+//! of the rear surface. What is searched for is the pupil of a stop that is a full disc, whatever the form of its opening: forms
+//! lie within their disc, and need be neither convex nor in its middle. A grid closes in on it, through a stop that is opened
+//! wide first if few points of the grid see through, and closed step by step.
+//!
+//! Between the points that see through and the rim of a disc of radius R there is less than a cell and the part of a cell
+//! 1 / (8 R / cell); bounds are wider than the points by more, so that only the tips of narrow crescents are lost.
 
 use etendue_math::{Bounds2, Point2, Point3, Ray, Vector2};
 use rayon::prelude::*;
@@ -12,8 +16,14 @@ use super::trace::Barrel;
 
 /// Distances from the axis between which pupils are taken as alike, as in pbrt.
 const N_INTERVALS: usize = 64;
-/// Points across a grid. Bounds end up wider than the pupil by two of its cells.
+/// Points across a grid.
 const N_GRID: usize = 32;
+/// What of a grid must see through, in cells each way, before the search closes in.
+const LEAST_SPAN: f32 = 4.0;
+/// By how many cells bounds are wider than the points that see through, while the search closes in.
+const SEARCH_MARGIN: f32 = 2.0;
+/// And in the end: narrower bounds waste fewer rays.
+const FINAL_MARGIN: f32 = 1.5;
 /// The stop is opened by powers of this, so that what passed before spans several cells when it is closed again.
 const WIDENING: f32 = 4.0;
 /// Most such steps: a stop of 1 um is found in a lens of 1 m.
@@ -96,33 +106,67 @@ fn find_pupil(barrel: &Barrel, film: Point3) -> Option<Bounds2> {
     // A rear surface that is curved reaches beyond its clear radius on the plane through its vertex.
     let half = Vector2::splat(1.5 * barrel.rear_radius());
     let whole = Bounds2::new(Point2::new(0.0, 0.0) - half, Point2::new(0.0, 0.0) + half);
-    let widened = |step: i32| WIDENING.powi(step);
-    let (steps, mut bounds) =
-        (0..MOST_STEPS).find_map(|step| Some((step, open_cells(barrel, film, whole, widened(step))?)))?;
-    for step in (0..=steps).rev() {
+    let (mut step, mut found) = (0, open_cells(barrel, film, whole, 0));
+    while step + 1 < MOST_STEPS && !found.is_some_and(|cells| cells.span() >= LEAST_SPAN) {
+        step += 1;
+        found = open_cells(barrel, film, whole, step);
+    }
+    let mut bounds = found?.bounds(whole, SEARCH_MARGIN);
+    for step in (0..=step).rev() {
         // Closes in until that gains little.
         loop {
-            let closer = open_cells(barrel, film, bounds, widened(step))?;
+            let cells = open_cells(barrel, film, bounds, step)?;
+            let closer = cells.bounds(bounds, SEARCH_MARGIN);
             let gain = closer.area() / bounds.area();
-            bounds = closer;
             if gain.is_nan() || gain >= 0.7 {
+                if step == 0 {
+                    return Some(cells.bounds(bounds, FINAL_MARGIN));
+                }
                 break;
             }
+            bounds = closer;
         }
     }
-    Some(bounds)
+    None
 }
 
-/// The bounds of the grid's points that light passes, widened by a cell.
-fn open_cells(barrel: &Barrel, film: Point3, region: Bounds2, widened: f32) -> Option<Bounds2> {
+/// The first and the last point of a grid that light passes, each way, in cells.
+#[derive(Clone, Copy, Debug)]
+struct Cells {
+    first: Vector2,
+    last: Vector2,
+}
+
+impl Cells {
+    /// How many cells they span, the shorter way.
+    fn span(self) -> f32 {
+        let span = self.last - self.first;
+        span.x.min(span.y) + 1.0
+    }
+
+    /// Their bounds in the region of the grid, widened by so many cells.
+    fn bounds(self, region: Bounds2, margin: f32) -> Bounds2 {
+        let cell = (region.max - region.min) / N_GRID as f32;
+        let at = |place: Vector2| region.min + Vector2::new(place.x * cell.x, place.y * cell.y);
+        Bounds2::new(at(self.first - Vector2::splat(margin)), at(self.last + Vector2::splat(margin)))
+    }
+}
+
+/// The grid's points that light passes through a stop that is opened by so many steps.
+fn open_cells(barrel: &Barrel, film: Point3, region: Bounds2, step: i32) -> Option<Cells> {
     let cell = (region.max - region.min) / N_GRID as f32;
-    let mut open: Option<Bounds2> = None;
+    let widened = WIDENING.powi(step);
+    let mut open: Option<Cells> = None;
     for i in 0..N_GRID * N_GRID {
         let (x, y) = ((i % N_GRID) as f32 + 0.5, (i / N_GRID) as f32 + 0.5);
         let p = region.min + Vector2::new(x * cell.x, y * cell.y);
-        if ray_to(film, p, barrel.rear_z()).is_some_and(|ray| barrel.trace_widened(ray, widened).is_some()) {
-            let this = Bounds2::new(p - cell, p + cell);
-            open = Some(open.map_or(this, |open| join_bounds(open, this)));
+        if ray_to(film, p, barrel.rear_z()).is_some_and(|ray| barrel.passes_disc(ray, widened)) {
+            let Cells { first, last } =
+                open.unwrap_or(Cells { first: Vector2::new(x, y), last: Vector2::new(x, y) });
+            open = Some(Cells {
+                first: Vector2::new(first.x.min(x), first.y.min(y)),
+                last: Vector2::new(last.x.max(x), last.y.max(y)),
+            });
         }
     }
     open

@@ -50,6 +50,11 @@ impl StopPicture {
 }
 
 impl StopShape {
+    /// False for a picture without light.
+    pub(super) fn has_opening(&self) -> bool {
+        !matches!(self, Self::Picture(picture) if picture.open.iter().all(|open| *open <= 0.0))
+    }
+
     /// The share of light that passes a point of the circle of radius 1.
     pub(super) fn open_at(&self, p: Point2) -> f32 {
         let r2 = p.x * p.x + p.y * p.y;

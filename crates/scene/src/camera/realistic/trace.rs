@@ -58,11 +58,21 @@ impl Barrel {
     /// A ray from the film as it leaves the front, and the share of it that passes the stop; `None` if a rim stops it, or total
     /// reflection.
     pub(super) fn trace(&self, ray: Ray) -> Option<(Ray, f32)> {
-        self.trace_widened(ray, 1.0)
+        self.follow(ray, 1.0, &self.stop_shape)
     }
 
-    /// As [`trace`](Self::trace), with a stop as many times as wide.
-    pub(super) fn trace_widened(&self, mut ray: Ray, widened: f32) -> Option<(Ray, f32)> {
+    /// True if a ray passes where the stop is a full disc, as many times as wide.
+    pub(super) fn passes_disc(&self, ray: Ray, widened: f32) -> bool {
+        self.follow(ray, widened, &StopShape::Disc).is_some()
+    }
+
+    /// False if the form of the stop lets nothing pass anywhere.
+    pub(super) fn has_opening(&self) -> bool {
+        self.stop_shape.has_opening()
+    }
+
+    /// As [`trace`](Self::trace), with a stop of that form and as many times as wide.
+    fn follow(&self, mut ray: Ray, widened: f32, stop_shape: &StopShape) -> Option<(Ray, f32)> {
         let mut open = 1.0;
         for surface in &self.surfaces {
             let p = if surface.radius == 0.0 {
@@ -71,7 +81,7 @@ impl Barrel {
                     return None;
                 }
                 let clear = surface.clear * widened;
-                open *= self.stop_shape.open_at(Point2::new(p.x / clear, p.y / clear));
+                open *= stop_shape.open_at(Point2::new(p.x / clear, p.y / clear));
                 if open <= 0.0 {
                     return None;
                 }

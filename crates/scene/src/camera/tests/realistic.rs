@@ -52,7 +52,7 @@ fn realistic(lens: &LensPrescription, settings: LensSettings) -> Camera {
 
 /// Rays of a raster position for a grid of lens points.
 fn rays(camera: &Camera, p_film: Point2) -> impl Iterator<Item = Option<CameraRay>> {
-    const N: usize = 64;
+    const N: usize = 128;
     let place = |i: usize| (i as f32 + 0.5) / N as f32;
     (0..N * N).map(move |i| camera.sample_ray(p_film, Point2::new(place(i % N), place(i / N)), 0.0))
 }
@@ -223,6 +223,52 @@ fn tiny_stops_are_found() {
     }
     let tiny = irradiance(&realistic(&double_gauss(), settings(0.0001, 10.0)), CENTRE);
     assert!((tiny / (wide / 400.0) - 1.0).abs() < 0.1, "{tiny} {wide}");
+}
+
+/// An opening aside of the middle of the stop lets its area of light through, wherever it is; none is dark.
+#[test]
+fn openings_aside_are_found() {
+    let n = 16;
+    let at = |column: usize, row: usize| {
+        let mut open = vec![0.0; n * n];
+        open[row * n + column] = 1.0;
+        let picture = std::sync::Arc::new(StopPicture::new(n, n, open).unwrap());
+        LensSettings { stop_shape: StopShape::Picture(picture), ..settings(0.008, 3.0) }
+    };
+    let of_disc = irradiance(&realistic(&double_gauss(), settings(0.008, 3.0)), CENTRE);
+    // A square of an eighth of the radius in a circle.
+    let expected = 4.0 / (n * n) as f32 / std::f32::consts::PI;
+    for (column, row) in [(7, 7), (13, 8), (2, 4), (8, 14)] {
+        let share = irradiance(&realistic(&double_gauss(), at(column, row)), CENTRE) / of_disc;
+        // About 7 x 7 of the grid's points see through: a row and a column more or less are two sevenths.
+        assert!((share / expected - 1.0).abs() < 0.35, "{column} {row}: {share} but {expected}");
+    }
+    let dark = std::sync::Arc::new(StopPicture::new(1, 1, vec![0.0]).unwrap());
+    let dark = LensSettings { stop_shape: StopShape::Picture(dark), ..settings(0.008, 3.0) };
+    let Projection::Realistic(camera) = realistic(&double_gauss(), dark).projection().clone() else {
+        panic!("a realistic camera")
+    };
+    assert!(!camera.is_open());
+}
+
+/// Bounds of the pupil leave nothing out, wherever a small stop lies in the cells of the grid: behind a thin lens the film gets
+/// the light of the whole stop.
+#[test]
+fn bounds_hold_all_of_small_pupils() {
+    for diameter in [0.0007_f32, 0.0009, 0.001, 0.0012, 0.0015] {
+        let camera = realistic(&thin(), settings(diameter, 10.0));
+        let Projection::Realistic(inside) = camera.projection() else { panic!("a realistic camera") };
+        let z = inside.film_distance() + 0.67e-3 * THICKNESS_MM;
+        let area = std::f32::consts::PI * diameter * diameter / 4.0;
+        for i in 0..40 {
+            let x = 150.0 + 3.5 * i as f32;
+            let from_axis = (x - 150.0) / 300.0 * inside.film_size_m()[0];
+            let cos2 = z * z / (z * z + from_axis * from_axis);
+            let share = irradiance(&camera, Point2::new(x, 100.0)) * z * z / (area * cos2 * cos2);
+            // The image of the stop is larger than it by the lens before it; the grid counts to half a per cent.
+            assert!((share - 1.0).abs() < 0.02, "{diameter} at {x}: {share}");
+        }
+    }
 }
 
 /// A lens cannot focus closer than about four focal lengths.
