@@ -46,6 +46,45 @@ fn direction_at(place: Point2) -> (Vector3, f32) {
     (Vector3::new(sine * x, sine * y, -cosine), sine)
 }
 
+/// For each cell of the density, rows from the nadir, its largest intensity times the sine in its middle. For the web C, whose
+/// angles are those of the cells, no cell with light has weight 0; for others corners and middle stand for a cell.
+fn cell_weights(photometry: &Photometry) -> Vec<f32> {
+    let (rows, columns) = N_CELLS;
+    let (vertical, horizontal) = photometry.bends();
+    let by_row: Vec<Vec<f32>> = (0..rows).map(|row| places_within(row, rows, 180.0, vertical)).collect();
+    let by_column: Vec<Vec<f32>> =
+        (0..columns).map(|column| places_within(column, columns, 360.0, horizontal)).collect();
+    let mut weights = Vec::with_capacity(rows * columns);
+    for (row, ys) in by_row.iter().enumerate() {
+        let (_, sine) = direction_at(Point2::new(0.0, (row as f32 + 0.5) / rows as f32));
+        for xs in &by_column {
+            let places = ys.iter().flat_map(|y| xs.iter().map(move |x| Point2::new(*x, *y)));
+            let candela = places.map(|place| photometry.intensity(direction_at(place).0));
+            weights.push(sine * candela.fold(0.0, f32::max));
+        }
+    }
+    weights
+}
+
+/// Where one of `n` cells over the angles up to `whole` degrees may be brightest, as shares of the whole: at its ends, in its
+/// middle and where intensity bends. Ends are taken a little within, for a table may end there; of bends in tables that are
+/// mirrored the mirror images count as well.
+fn places_within(index: usize, n: usize, whole: f32, bends: &[f32]) -> Vec<f32> {
+    let at = |offset: f32| (index as f32 + offset) / n as f32;
+    let (first, last) = (at(1e-3), at(1.0 - 1e-3));
+    let mut places = vec![first, at(0.5), last];
+    // Cells do not straddle multiples of a right angle, where tables are mirrored: up and down, then by turns.
+    for bend in bends {
+        let half = [*bend, 180.0 - bend];
+        let images = half.into_iter().chain(half.map(|angle| 360.0 - angle)).chain(half.map(|a| 180.0 + a));
+        let images = if whole > 180.0 { images.collect() } else { vec![*bend] };
+        places.extend(images.into_iter().map(|angle| angle / whole).filter(|x| (first..last).contains(x)));
+    }
+    places.sort_by(f32::total_cmp);
+    places.dedup();
+    places
+}
+
 impl IesLight {
     /// Parameters in scene files.
     pub const PARAMETERS: &[ParameterSpec] = &[
@@ -64,27 +103,16 @@ impl IesLight {
     /// A luminaire with one candela of `colour` for each of the table.
     fn new(world_from_light: &Transform, unit: Spectrum, photometry: Arc<Photometry>) -> Self {
         let (rows, columns) = N_CELLS;
-        let mut weights = Vec::with_capacity(rows * columns);
-        let (mut sum, mut peak) = (0.0_f64, 0.0_f32);
-        for i in 0..rows * columns {
-            let middle = |k: usize, n: usize| (k as f32 + 0.5) / n as f32;
-            let (w, sine) =
-                direction_at(Point2::new(middle(i % columns, columns), middle(i / columns, rows)));
-            let candela = photometry.intensity(w);
-            peak = peak.max(candela);
-            sum += f64::from(candela * sine);
-            weights.push(candela * sine);
-        }
         let domain = Bounds2::new(Point2::splat(0.0), Point2::splat(1.0));
         Self {
             p: world_from_light.point(Point3::ORIGIN),
             world_from_light: *world_from_light,
             light_from_world: world_from_light.inverse(),
             intensity: unit,
+            lumens: photometry.lumens(),
+            peak: photometry.peak(),
+            distribution: PiecewiseConstant2::new(&cell_weights(&photometry), columns, rows, domain),
             photometry,
-            lumens: sum * f64::from(2.0 * PI * PI) / (rows * columns) as f64,
-            peak,
-            distribution: PiecewiseConstant2::new(&weights, columns, rows, domain),
         }
     }
 
@@ -174,8 +202,7 @@ impl IesLight {
     }
 
     pub(super) fn bounds(&self, context: &LightContext) -> Option<LightBounds> {
-        let mean = self.lumens / f64::from(4.0 * PI);
-        let intensity = LightPower::of(&self.intensity, context.spectra).weight * mean;
+        let intensity = LightPower::of(&self.intensity, context.spectra).weight * f64::from(self.peak);
         Some(LightBounds::point(Bounds3::new(self.p, self.p), intensity))
     }
 }

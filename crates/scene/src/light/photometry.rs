@@ -13,6 +13,8 @@
 //! Between the angles of the table intensity is interpolated linearly, beyond them it is 0. A table of a half or a quarter
 //! of the web is mirrored.
 
+use std::f64::consts::PI;
+
 use etendue_math::Vector3;
 
 /// A photometric web.
@@ -98,6 +100,56 @@ impl Photometry {
         column(j) + (column(next) - column(j)) * t
     }
 
+    /// Luminous flux in lumen: the integral over the table's own intervals, however narrow they are.
+    #[must_use]
+    pub fn lumens(&self) -> f64 {
+        let (vertical, horizontal) = (&self.vertical, &self.horizontal);
+        let even = |_: f64| 1.0;
+        let whole = |angles: &[f32]| if angles[0] == 0.0 { 2.0 } else { 1.0 };
+        let sine = |v: f64| v.to_radians().sin();
+        // The cosine of B's horizontal angle is that of a latitude: none is beyond a right angle.
+        let cosine = |angle: f64| angle.to_radians().cos().max(0.0);
+        let (by_vertical, by_horizontal, copies) = match self.web {
+            PhotometricWeb::C => {
+                let (first, last) = (horizontal[0], horizontal[horizontal.len() - 1]);
+                let copies = match last - first {
+                    90.0 => 4.0,
+                    180.0 => 2.0,
+                    _ => 1.0,
+                };
+                (weights(vertical, sine), weights_or(horizontal, 2.0 * PI, even), copies)
+            }
+            PhotometricWeb::A | PhotometricWeb::B if horizontal.len() == 1 => {
+                let is_a = self.web == PhotometricWeb::A;
+                let by_vertical = if is_a { weights(vertical, cosine) } else { weights(vertical, even) };
+                (by_vertical, vec![if is_a { 2.0 * PI } else { 2.0 }], whole(vertical))
+            }
+            PhotometricWeb::A => {
+                (weights(vertical, cosine), weights(horizontal, even), whole(vertical) * whole(horizontal))
+            }
+            PhotometricWeb::B => {
+                (weights(vertical, even), weights(horizontal, cosine), whole(vertical) * whole(horizontal))
+            }
+        };
+        let column = |values: &[f32]| -> f64 {
+            values.iter().zip(&by_vertical).map(|(cd, weight)| f64::from(*cd) * weight).sum()
+        };
+        let columns = self.candela.chunks(vertical.len()).zip(&by_horizontal);
+        copies * columns.map(|(values, weight)| column(values) * weight).sum::<f64>()
+    }
+
+    /// Largest luminous intensity in candela.
+    #[must_use]
+    pub fn peak(&self) -> f32 {
+        self.candela.iter().copied().fold(0.0, f32::max)
+    }
+
+    /// Angles of the web C between which intensity has no bends; empty for other webs, whose angles are not those of a sphere
+    /// around z.
+    pub(super) fn bends(&self) -> (&[f32], &[f32]) {
+        if self.web == PhotometricWeb::C { (&self.vertical, &self.horizontal) } else { (&[], &[]) }
+    }
+
     /// Angles by the symmetry of the table.
     fn fold(&self, v: f32, h: f32) -> (f32, f32) {
         let (first, last) = (self.horizontal[0], self.horizontal[self.horizontal.len() - 1]);
@@ -126,6 +178,30 @@ impl Photometry {
             }
         }
     }
+}
+
+/// The integrals over the hats of interpolation between ascending angles, in radians, with a density over degrees.
+fn weights(angles: &[f32], density: impl Fn(f64) -> f64) -> Vec<f64> {
+    /// Degrees over which Simpson's rule is exact to 1e-9 for a sine.
+    const STEP: f64 = 2.0;
+    let mut weights = vec![0.0; angles.len()];
+    for (i, pair) in angles.windows(2).enumerate() {
+        let (start, width) = (f64::from(pair[0]), f64::from(pair[1]) - f64::from(pair[0]));
+        let n = (width / STEP).ceil().max(1.0) as usize;
+        for k in 0..=2 * n {
+            let simpson = if k == 0 || k == 2 * n { 1.0 } else { 2.0 + 2.0 * (k % 2) as f64 };
+            let t = k as f64 / (2 * n) as f64;
+            let weight = simpson * density(start + width * t) * width.to_radians() / (6 * n) as f64;
+            weights[i] += (1.0 - t) * weight;
+            weights[i + 1] += t * weight;
+        }
+    }
+    weights
+}
+
+/// As [`weights`], where a single angle stands for all.
+fn weights_or(angles: &[f32], of_all: f64, density: impl Fn(f64) -> f64) -> Vec<f64> {
+    if angles.len() == 1 { vec![of_all] } else { weights(angles, density) }
 }
 
 /// The angle in degrees whose cosine and sine are in that proportion.

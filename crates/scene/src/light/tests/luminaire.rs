@@ -125,6 +125,62 @@ fn the_flux_of_a_luminaire_is_the_integral_of_its_table() {
 }
 
 #[test]
+fn narrow_beams_keep_their_flux_and_their_photons() {
+    // I falls linearly from 1e6 cd to 0 over a small angle a: Phi = pi a^2 I / 3. Such a beam, and a ring between the cells.
+    #[track_caller]
+    fn check(vertical: &[f32], candela: &[f32], lumens: f64) {
+        let photometry =
+            Photometry::new(PhotometricWeb::C, vertical.to_vec(), vec![0.0], candela.to_vec()).unwrap();
+        let world = world(photometry, Entity::new("ies"), Transform::IDENTITY);
+        let (context, light, lambda) = (world.context(), world.light(), some_wavelengths());
+        assert_close(light.power(&context).lumens, lumens, 1e-3);
+        let Light::Ies(id) = light else { panic!("it is a luminaire") };
+        let peak = world.tables.luminaires[id.0 as usize].peak_intensity(&context);
+        assert_close(peak.lumens, 1e6, 1e-3);
+        assert_close(f64::from(light.bounds(&context).unwrap().intensity), peak.weight, 1e-3);
+        for (v, cd) in vertical.iter().zip(candela).filter(|(_, cd)| **cd > 0.0) {
+            let ray = Ray::new(Point3::ORIGIN, type_c(v.max(0.01), 33.0));
+            assert!(light.pdf_le(&context, &ray, None).1 > 0.0, "{cd} cd at {v} are never sampled");
+        }
+        let mut rng = rng("beam");
+        let n_found = (0..1000)
+            .filter(|_| light.sample_le(&context, rng.next_point2(), rng.next_point2(), &lambda).is_some());
+        assert!(n_found.count() > 100);
+    }
+    check(&[0.0, 0.2, 90.0], &[1e6, 0.0, 0.0], PI * 0.2_f64.to_radians().powi(2) / 3.0 * 1e6);
+    // A hat of 0.1 degrees at 10.1 degrees: 2 pi sin(10.1) times half its width in radians.
+    let ring = 2.0 * PI * 10.1_f64.to_radians().sin() * 0.1_f64.to_radians() * 1e6;
+    check(&[0.0, 10.05, 10.1, 10.15], &[0.0, 0.0, 1e6, 0.0], 0.5 * ring);
+}
+
+#[test]
+fn the_flux_of_any_web_is_that_of_its_directions() {
+    // By midpoints over the sphere, for whole tables, halves and quarters.
+    use PhotometricWeb::{A, B, C};
+    let (half, quarter): (&[f32], &[f32]) = (&[-90.0, -20.0, 10.0, 90.0], &[0.0, 15.0, 60.0, 90.0]);
+    for (web, vertical, horizontal) in [
+        (A, half, &[-180.0, -30.0, 70.0, 180.0][..]),
+        (A, quarter, quarter),
+        (A, half, &[0.0]),
+        (B, half, half),
+        (B, quarter, quarter),
+        (B, half, &[0.0]),
+        (C, quarter, &[0.0]),
+        (C, quarter, quarter),
+        (C, quarter, &[0.0, 60.0, 180.0]),
+        (C, quarter, &[90.0, 150.0, 270.0]),
+        (C, quarter, &[0.0, 60.0, 200.0, 360.0]),
+        (C, quarter, &[0.0, 120.0, 240.0]),
+    ] {
+        let candela = (0..vertical.len() * horizontal.len()).map(|i| (i * i % 7) as f32 + 1.0).collect();
+        let photometry = Photometry::new(web, vertical.to_vec(), horizontal.to_vec(), candela)
+            .expect("the table is right");
+        let expected = integrate_sphere(|w| f64::from(photometry.intensity(w)), 1e-4);
+        assert_close(photometry.lumens(), expected, 3e-3);
+    }
+}
+
+#[test]
 fn photons_of_a_luminaire_follow_its_table_with_equal_power() {
     let photometry = table(PhotometricWeb::C, &[0.0, 40.0, 90.0, 120.0], &[0.0, 70.0, 180.0]);
     let world = world(photometry.clone(), Entity::new("ies"), tilted());
