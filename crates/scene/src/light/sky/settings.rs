@@ -10,6 +10,8 @@ use crate::parameters::{ParameterSpec, Parameters};
 
 /// Elevation in degrees of the sun below which the sky is black: the end of nautical twilight.
 const DARKEST_DEGREES: f64 = -12.0;
+/// Largest factor: radiance of the sun's disc is 1e10 cd/m^2, and numbers end at 3e38.
+const MAX_FACTOR: f32 = 1e20;
 /// Ways to say where the sun stands, by the parameters that stand for them.
 const WAYS: [&[&str]; 3] =
     [&["sundirection"], &["elevation", "azimuth"], &["latitude", "longitude", "date", "time", "timezone"]];
@@ -57,7 +59,13 @@ impl SkySettings {
         let turbidity = within(p, "turbidity", 3.0, 1.0, 10.0);
         let ozone_du = within(p, "ozone", 300.0, 0.0, 1000.0);
         let ground_albedo = within(p, "groundalbedo", 0.2, 0.0, 1.0);
-        let (scale, sun_scale) = (factor(p, "scale"), factor(p, "sunscale"));
+        let (scale, mut sun_scale) = (factor(p, "scale"), factor(p, "sunscale"));
+        if scale * sun_scale > MAX_FACTOR {
+            let span = p.span_of("sunscale");
+            let text = format!("\"scale\" times \"sunscale\" must be at most {MAX_FACTOR:e}");
+            p.diagnostics().error(span, text);
+            sun_scale = 1.0;
+        }
         let has_ground = p.bool("ground", true);
         let compass = read_compass(p)?;
         let to_sun = read_sun(p, &compass)?;
@@ -196,11 +204,11 @@ fn within(p: &mut Parameters, name: &'static str, default: f32, least: f32, most
 /// A factor of at least 0.
 fn factor(p: &mut Parameters, name: &'static str) -> f32 {
     let value = p.float(name, 1.0);
-    // Radiance of the sun's disc is 1e10 cd/m^2, and numbers end at 3e38.
-    if (0.0..=1e20).contains(&value) {
+    if (0.0..=MAX_FACTOR).contains(&value) {
         return value;
     }
     let span = p.span_of(name);
-    p.diagnostics().error(span, format!("\"{name}\" must be at least 0 and at most 1e20, not {value}"));
+    p.diagnostics()
+        .error(span, format!("\"{name}\" must be at least 0 and at most {MAX_FACTOR:e}, not {value}"));
     1.0
 }

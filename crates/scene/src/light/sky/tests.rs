@@ -294,5 +294,9 @@ fn settings_that_make_no_sky_are_reported() {
     check(Entity::new("sun").with("sundirection", zero.clone()), "must not be zero");
     check(Entity::new("sun").with("up", zero), "\"up\" and \"north\"");
     check(Entity::new("sky").with("scale", floats(&[-1.0])), "at least 0");
+    let bright = Entity::new("sun").with("scale", floats(&[1e20])).with("sunscale", floats(&[1e20]));
+    let world = World::of(bright.clone());
+    assert!(sun(&world).normal_irradiance(&world.context()).lumens.is_finite());
+    check(bright, "times \"sunscale\" must be at most 1e20");
     check(Entity::new("sun").with("elevation", floats(&[-5.0])), "below the horizon");
 }
