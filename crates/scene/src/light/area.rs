@@ -1,5 +1,5 @@
-//! Surfaces that emit: radiance L into all directions of one or both sides, Phi = pi A L for one side (SPEC RAD-9,
-//! EMI-5, EMI-6). Each primitive of an emissive shape is a light; what it emits is shared.
+//! Surfaces that emit on one or both sides: the same radiance L in all directions, Phi = pi A L for one side (SPEC RAD-9,
+//! EMI-5, EMI-6), or less away from the normal, by a [`Profile`] (EMI-8). Each primitive of an emissive shape is a light; what it emits is shared.
 //!
 //! As in pbrt-v4, a picture is looked up with the shape's (u, v), v upwards. Power is split between the primitives by
 //! area: `power` of a mesh is that of the whole shape (pbrt-v4 gives that power to every triangle).

@@ -3,8 +3,8 @@
 //! A group is a box, and a cone of normals (axis `w`, half angle theta_o) around each of which light leaves within the
 //! angle theta_e. From these, an upper bound of the angle terms gives the importance of the group for a point
 //! (Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting", in the variant
-//! of pbrt-v4). Two things differ from pbrt-v4: brightness is the peak *intensity*, which compares point lights with
-//! surfaces on equal terms, and where rounding could make the importance of a contributing light 0, a small margin
+//! of pbrt-v4). Two things differ from pbrt-v4: brightness is *intensity*, which compares point lights with surfaces on
+//! equal terms, in the brightest direction but for lights with pictures, whose mean is taken; and where rounding could make the importance of a contributing light 0, a small margin
 //! keeps it positive.
 
 use std::f32::consts::PI;
@@ -28,7 +28,8 @@ pub struct LightBounds {
     pub cos_theta_o: f32,
     /// Cosine of the largest angle between a normal and light leaving there.
     pub cos_theta_e: f32,
-    /// Peak intensity by the weight of [`LightPower`](super::LightPower): for a surface, radiance times area.
+    /// Intensity by the weight of [`LightPower`](super::LightPower): the peak, or the mean over a picture. For a surface, radiance
+    /// along the normal times area.
     pub intensity: f32,
     /// True if light leaves on both sides.
     pub two_sided: bool,

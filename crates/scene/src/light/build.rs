@@ -106,7 +106,9 @@ impl LightKind {
             Self::Sky => "a clear sky by haze and the place of the sun, without the sun's disc",
             Self::Sun => "the sun's disc as seen through the air",
             Self::SunSky => "sky and sun together",
-            Self::Diffuse => "a surface with the same radiance in all directions (AreaLightSource)",
+            Self::Diffuse => {
+                "a surface with radiance in all directions or around its normal (AreaLightSource)"
+            }
         }
     }
 

@@ -1,5 +1,10 @@
 //! Switches of artists along a path (SPEC EMI-14; [`etendue_scene::controls`] says what they mean). What a sample of a light
 //! may not bring, a hit of it may not count, so that both techniques stay in balance.
+//!
+//! A sampled direction of a material with several lobes carries the light of all of them, and is taken for one that is drawn
+//! by what each contributes over the sum of the wavelengths. Where only some of the lobes are switched off and they differ in
+//! colour, what is left of such directions is right in luminance, but has the colour of the whole; samples of lights take each
+//! lobe with its own colour.
 
 use etendue_geometry::GeometryId;
 use etendue_scene::Scene;
