@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::brdf_table::read_brdf_table;
 use crate::contours::read_contours;
-use crate::file::read_file;
+use crate::file::{check_regular, read_file};
 use crate::ies::read_ies;
 use crate::images::{read_texels, read_texels_from};
 use crate::lens::read_lens;
@@ -122,6 +122,7 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
 
 fn load_file(kind: Kind, path: &Path) -> Result<Loaded, String> {
     if kind == Kind::Image {
+        check_regular(path).map_err(|error| error.to_string())?;
         let texels = read_texels(path).map_err(|error| error.to_string())?;
         return Ok(Loaded::Image(Arc::new(texels)));
     }

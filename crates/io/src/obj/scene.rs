@@ -14,7 +14,7 @@ use super::materials::{Converted, Converter};
 use super::mesh::meshes_by_material;
 use super::mtl;
 use super::parse::{Name, parse};
-use crate::file::read_file;
+use crate::file::{read_file, read_given_file};
 use crate::mesh::smooth_but_creases;
 use crate::stage::{CREASE_DEGREES, Ground, Up, set_stage};
 
@@ -27,7 +27,7 @@ const MAX_LIBRARIES: usize = 1000;
 #[must_use]
 pub fn read_obj(path: &Path) -> (Document, Diagnostics) {
     let base_directory = path.parent().map(Path::to_owned).unwrap_or_default();
-    match read_file(path) {
+    match read_given_file(path) {
         Ok(bytes) => read_obj_bytes(&path.display().to_string(), bytes, &base_directory),
         Err(error) => {
             let mut diagnostics = Diagnostics::default();

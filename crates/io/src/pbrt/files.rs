@@ -7,7 +7,7 @@ use etendue_scene::diagnostics::FileId;
 
 use super::builder::Builder;
 use super::parser;
-use crate::file::read_file;
+use crate::file::{read_file, read_given_file};
 
 /// Levels of `Include` inside of each other.
 const MAX_DEPTH: usize = 100;
@@ -41,7 +41,7 @@ impl Files {
             builder.diagnostics.error(span, format!("more than {MAX_DEPTH} files include each other"));
             return;
         }
-        let bytes = match read_file(&path) {
+        let bytes = match if span.is_some() { read_file(&path) } else { read_given_file(&path) } {
             Ok(bytes) => bytes,
             Err(error) => {
                 builder.diagnostics.error(span, error.to_string());

@@ -10,7 +10,7 @@ use etendue_scene::{Diagnostics, Document, LoadedMesh};
 
 use super::read_ply;
 use crate::checkpoint::hash_bytes;
-use crate::file::read_file;
+use crate::file::read_given_file;
 use crate::mesh::{smooth_but_creases, split_quads};
 use crate::obj::bare_material;
 use crate::stage::{CREASE_DEGREES, Ground, Up, set_stage};
@@ -23,7 +23,7 @@ pub fn read_bare_ply(path: &Path) -> (Document, Diagnostics) {
     let base_directory = path.parent().map(Path::to_owned).unwrap_or_default();
     let mut document = Document { base_directory, ..Document::default() };
     let mut diagnostics = Diagnostics::default();
-    let read = read_file(path).map_err(|error| error.to_string()).and_then(|bytes| {
+    let read = read_given_file(path).map_err(|error| error.to_string()).and_then(|bytes| {
         read_ply(&bytes)
             .map_err(|error| format!("`{}`: {error}", path.display()))
             .map(|ply| (ply, hash_bytes(&bytes)))
