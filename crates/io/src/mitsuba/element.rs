@@ -41,6 +41,11 @@ impl Element {
         self.attribute(name).map_or("", |attribute| &attribute.value)
     }
 
+    /// Number of elements: itself and all within.
+    pub(super) fn n_elements(&self) -> usize {
+        1 + self.children.iter().map(Self::n_elements).sum::<usize>()
+    }
+
     /// The type of a plugin.
     pub(super) fn plugin(&self) -> &str {
         self.text("type")

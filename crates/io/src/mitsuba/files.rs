@@ -11,12 +11,17 @@ use etendue_scene::diagnostics::{FileId, Sources, nearest_name};
 use etendue_scene::{Diagnostics, Span};
 
 use super::element::{Attribute, Element, modern_tag, snake_case};
-use crate::file::read_file;
+use super::reader::MAX_SUGGESTED;
+use crate::file::{read_file, read_given_file};
 
 /// Levels of elements inside of each other.
 const MAX_DEPTH: usize = 64;
 /// Levels of files that include each other.
 const MAX_FILES: usize = 15;
+/// Files that a scene may include, one after the other; a file counts each time.
+const MAX_INCLUDED: usize = 10_000;
+/// Bytes of all of them.
+const MAX_INCLUDED_BYTES: usize = 256 << 20;
 /// Elements of a scene.
 const MAX_ELEMENTS: usize = 10_000_000;
 /// Bytes that parameters may stand for in a scene, all uses together.
@@ -35,9 +40,16 @@ pub(super) struct Files {
     parameters: HashMap<String, String>,
     /// Canonical path of each open file.
     open: Vec<PathBuf>,
-    n_elements: usize,
+    pub(super) n_elements: usize,
     /// Bytes that parameters stood for so far.
     n_filled_in: usize,
+    /// Files included so far, and their bytes.
+    n_included: usize,
+    n_included_bytes: usize,
+    /// True once an inclusion was refused for their number.
+    is_full: bool,
+    /// Parameters without value so far.
+    n_unknown: usize,
 }
 
 impl Files {
@@ -58,13 +70,16 @@ impl Files {
             self.diagnostics.error(span, format!("more than {MAX_FILES} files include each other"));
             return None;
         }
-        let bytes = match read_file(path) {
+        let bytes = match if span.is_some() { read_file(path) } else { read_given_file(path) } {
             Ok(bytes) => bytes,
             Err(error) => {
                 self.diagnostics.error(span, error.to_string());
                 return None;
             }
         };
+        if span.is_some() {
+            self.n_included_bytes += bytes.len();
+        }
         self.open.push(canonical);
         let root = self.read_bytes(&path.display().to_string(), bytes);
         self.open.pop();
@@ -175,6 +190,17 @@ impl Files {
             self.diagnostics.error(element.span, "`<include>` needs a `filename`");
             return;
         };
+        if self.n_included >= MAX_INCLUDED || self.n_included_bytes > MAX_INCLUDED_BYTES {
+            if !std::mem::replace(&mut self.is_full, true) {
+                let message = format!(
+                    "the scene includes more than {MAX_INCLUDED} files or {} MiB; the rest is left out",
+                    MAX_INCLUDED_BYTES >> 20
+                );
+                self.diagnostics.error(name.span, message);
+            }
+            return;
+        }
+        self.n_included += 1;
         let path = self.base_directory.join(self.resolved(&name.value));
         let Some(root) = self.read(&path, Some(name.span)) else { return };
         if root.tag == "scene" { into.extend(root.children) } else { into.push(root) }
@@ -221,7 +247,11 @@ impl Files {
     }
 
     fn unknown_parameter(&mut self, name: &str, span: Span) {
-        let help = match nearest_name(name, self.parameters.keys().map(String::as_str)) {
+        self.n_unknown += 1;
+        // To compare each of many with all that there are takes too long.
+        let all = self.n_unknown <= MAX_SUGGESTED;
+        let known = self.parameters.keys().map(String::as_str).filter(|_| all);
+        let help = match nearest_name(name, known) {
             Some(near) => format!("did you mean `${near}`?"),
             None => format!("give it a value: <default name=\"{name}\" value=\"...\"/>"),
         };

@@ -383,14 +383,15 @@ impl<'e> Reader<'e> {
         self.pass_number(bsdf, "metallic", &mut material, "metallic");
         self.pass_number(bsdf, "roughness", &mut material, "roughness");
         self.pass_number(bsdf, "anisotropic", &mut material, "anisotropy");
-        self.pass_number(bsdf, "clearcoat", &mut material, "clearcoat");
+        let has_coat = self.pass_number(bsdf, "clearcoat", &mut material, "clearcoat");
         let is_thin = bsdf.plugin() == "principledthin";
         let has_glass = self.pass_number(bsdf, "spec_trans", &mut material, "transmission");
         if has_glass && !is_thin {
             // A solid of glass, however thick.
             material.parameters.push(parameter("thickness", Value::Floats(vec![1.0]), bsdf.span));
         }
-        if let Some(gloss) = self.float_opt(bsdf, "clearcoat_gloss") {
+        let gloss = self.float_opt(bsdf, "clearcoat_gloss").or(has_coat.then_some(0.0));
+        if let Some(gloss) = gloss {
             // The coat's alpha goes from 0.1 to 0.001; ours is given by its square root.
             let alpha = 0.1 + (0.001 - 0.1) * gloss.clamp(0.0, 1.0);
             material = material.with("clearcoatroughness", Value::Floats(vec![alpha.sqrt()]));

@@ -20,8 +20,8 @@ pub(super) const FROM_RADIOMETRIC: f32 = (1.0 / (683.002 * 106.856_895)) as f32;
 /// Levels of plugins inside of each other, with those that references lead to.
 const MAX_DEPTH: usize = 64;
 
-/// References to nothing that get a suggestion.
-const MAX_SUGGESTED: usize = 20;
+/// References to nothing, and to parameters without value, that get a suggestion.
+pub(super) const MAX_SUGGESTED: usize = 20;
 
 /// Turns elements into a document.
 #[derive(Debug)]
@@ -43,6 +43,8 @@ pub(super) struct Reader<'e> {
     pub(super) is_legacy: bool,
     /// References to nothing so far.
     n_unknown_ids: usize,
+    /// Elements of the shapes that merges led to so far.
+    pub(super) n_merged: usize,
     /// Plugins that are being read.
     open: Vec<usize>,
     /// Names that were asked of a plugin.
@@ -65,6 +67,7 @@ impl<'e> Reader<'e> {
             meshes: Vec::new(),
             is_legacy: major.is_some_and(|major| major < 2),
             n_unknown_ids: 0,
+            n_merged: 0,
             open: Vec::new(),
             asked: HashMap::new(),
         };
@@ -242,6 +245,8 @@ impl<'e> Reader<'e> {
     pub(super) fn finish(&mut self, plugin: &'e Element) {
         let asked = self.asked.remove(&plugin.number).unwrap_or_default();
         for child in plugin.children.iter().filter(|child| !child.used.get()) {
+            // One warning is enough, however often the plugin is used.
+            child.used.set(true);
             if child.tag == "ref" && self.resolved(child).is_none() {
                 continue;
             }

@@ -16,6 +16,11 @@ const IS_DOUBLE: u32 = 0x2000;
 /// Vertices, and triangles, that a mesh may have.
 const MAX_COUNT: u64 = 1 << 31;
 
+/// Bytes that a mesh may decompress to beyond [`MAX_RATIO`] times those of the file: deflate can make a thousand of one, which
+/// no real mesh does.
+const FREE_BYTES: u64 = 16 << 20;
+const MAX_RATIO: u64 = 256;
+
 /// The mesh of that index.
 ///
 /// # Errors
@@ -32,8 +37,12 @@ pub(super) fn read_serialized(bytes: &[u8], index: usize) -> Result<LoadedMesh, 
         _ => return Err(format!("version {version} is not known, but 3 and 4")),
     };
     let start = offset(bytes, width, index)?;
-    let mut stream = ZlibDecoder::new(bytes.get(start + 4..).ok_or("the file is cut off")?);
-    read_mesh(&mut stream, version).map_err(|error| match error.kind() {
+    let compressed = bytes.get(start + 4..).ok_or("the file is cut off")?;
+    let most = FREE_BYTES + MAX_RATIO * bytes.len() as u64;
+    let mut stream = ZlibDecoder::new(compressed).take(most);
+    let result = read_mesh(&mut stream, version);
+    result.map_err(|error| match error.kind() {
+        _ if stream.limit() == 0 => format!("mesh {index} decompresses to more than {most} bytes"),
         std::io::ErrorKind::InvalidData => error.to_string(),
         _ => format!("mesh {index} is damaged: {error}"),
     })

@@ -65,7 +65,7 @@ impl<'e> Reader<'e> {
     pub(super) fn sensor(&mut self, sensor: &'e Element) {
         let resolution = match self.nested(sensor, "film").first() {
             Some(film) => self.film(film),
-            None => [768, 576],
+            None => self.default_film(sensor),
         };
         if let Some(sampler) = self.nested(sensor, "sampler").first().copied() {
             self.sampler(sampler);
@@ -165,6 +165,17 @@ impl<'e> Reader<'e> {
             let window = vec![dx - x, dx + x, dy - y, dy + y];
             *camera = std::mem::take(camera).with("screenwindow", Value::Floats(window));
         }
+    }
+
+    /// The film of a sensor without one, with its size.
+    fn default_film(&mut self, sensor: &Element) -> [i32; 2] {
+        let size = [768, 576];
+        let integers = |n: i32| Value::Integers(vec![n]);
+        let film = entity("rgb", sensor);
+        let film = film.with("xresolution", integers(size[0])).with("yresolution", integers(size[1]));
+        self.document.film = Some(film);
+        self.document.filter = Some(gaussian(sensor.span, 0.5));
+        size
     }
 
     /// The size of the whole picture.

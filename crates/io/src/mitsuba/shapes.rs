@@ -37,6 +37,9 @@ const MISSING: &[&str] = &[
     "ellipsoidsmesh",
 ];
 
+/// Elements that merged shapes may have beyond one for each of the scene: more come from references alone.
+const MAX_REPEATED: usize = 1 << 20;
+
 /// Faces of the cube [-1, 1]^3: corner at u = v = 0, then what u and v add, counter-clockwise from outside.
 const CUBE: [[[f32; 3]; 3]; 6] = [
     [[-1.0, -1.0, 1.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]],
@@ -54,10 +57,15 @@ impl<'e> Reader<'e> {
             "instance" => self.instance(shape),
             "shapegroup" => self.shape_group(shape),
             "merge" => {
-                for inner in self.nested(shape, "shape") {
-                    self.shape(inner);
-                }
-                self.finish(shape);
+                self.guarded(shape, |reader| {
+                    for inner in reader.nested(shape, "shape") {
+                        if reader.may_merge(inner) {
+                            reader.shape(inner);
+                        }
+                    }
+                    reader.finish(shape);
+                    Some(())
+                });
             }
             _ => {
                 if let Some(shape) = self.single_shape(shape) {
@@ -65,6 +73,19 @@ impl<'e> Reader<'e> {
                 }
             }
         }
+    }
+
+    /// Whether a merged shape may be read: since merges can refer to merges, a few lines could stand for any number.
+    fn may_merge(&mut self, inner: &'e Element) -> bool {
+        let most = self.files.n_elements + MAX_REPEATED;
+        let was_over = self.n_merged > most;
+        self.n_merged = self.n_merged.saturating_add(inner.n_elements());
+        let is_over = self.n_merged > most;
+        if is_over && !was_over {
+            let message = "the references of merged shapes lead to too many shapes; the rest is left out";
+            self.diagnostics.error(inner.plugin_span(), message);
+        }
+        !is_over
     }
 
     fn single_shape(&mut self, shape: &'e Element) -> Option<ShapeEntity> {

@@ -430,3 +430,78 @@ fn environments() {
         }
     }
 }
+
+/// Merges that contain themselves, or each other many times over, are an error and no endless work.
+#[test]
+fn merges_are_bounded() {
+    let (document, problems) = read_all(
+        r#"<scene version="3.0.0"><shape type="merge" id="a"><ref id="a"/><shape type="cube"/></shape></scene>"#,
+    );
+    assert_eq!(document.shapes.len(), 1);
+    assert!(problems[0].contains("`merge` refers to itself"), "{problems:?}");
+    let mut text = r#"<scene version="3.0.0"><shape type="sphere" id="m0"/>"#.to_owned();
+    for i in 1..40 {
+        let last = i - 1;
+        text += &format!(r#"<shape type="merge" id="m{i}"><ref id="m{last}"/><ref id="m{last}"/></shape>"#);
+    }
+    let (_, problems) = read_all(&(text + "</scene>"));
+    assert_eq!(problems.len(), 1, "{:?}", &problems[..problems.len().min(4)]);
+    assert!(problems[0].contains("too many shapes"), "{problems:?}");
+}
+
+/// A file may be included often, but not so often that a small scene becomes any size.
+#[test]
+fn inclusions_are_bounded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("b.xml"), "<scene version=\"3.0.0\"/>").expect("written");
+    let many = r#"<include filename="b.xml"/>"#.repeat(10_100);
+    let text = format!("<scene version=\"3.0.0\">{many}</scene>");
+    let (document, diagnostics) = read_mitsuba_bytes("a.xml", text.into_bytes(), folder.path());
+    let problems = listed(&document, &diagnostics);
+    assert_eq!(problems.len(), 1);
+    assert!(problems[0].contains("includes more than 10000 files"), "{problems:?}");
+}
+
+/// Of many parameters without value the first get a suggestion: to find one takes as long as there are parameters.
+#[test]
+fn suggestions_are_bounded() {
+    let (_, problems) = read_all(&format!(
+        r#"<scene version="3.0.0"><default name="speed" value="1"/>{}</scene>"#,
+        r#"<integrator type="path"><integer name="max_depth" value="$sped"/></integrator>"#.repeat(30)
+    ));
+    let n = problems.iter().filter(|problem| problem.contains("did you mean `$speed`?")).count();
+    assert_eq!(n, 20);
+}
+
+/// A few bytes that decompress to many are refused before they fill the memory.
+#[test]
+fn serialized_bombs() {
+    let mut file = [0x041c_u16.to_le_bytes(), 3_u16.to_le_bytes()].concat();
+    let mut body = 0x1000_u32.to_le_bytes().to_vec();
+    body.extend(3_000_000_u64.to_le_bytes());
+    body.extend(0_u64.to_le_bytes());
+    body.resize(body.len() + 12 * 3_000_000, 0);
+    let mut zlib = flate2::write::ZlibEncoder::new(&mut file, flate2::Compression::best());
+    zlib.write_all(&body).expect("memory");
+    zlib.finish().expect("memory");
+    file.extend([0_u32, 1].iter().flat_map(|word| word.to_le_bytes()));
+    let why = read_serialized(&file, 0).expect_err("too large");
+    assert!(why.contains("decompresses to more than"), "{why}");
+}
+
+/// A coat without gloss has alpha 0.1, of which ours is given by the square root.
+#[test]
+fn coats_without_gloss() {
+    check_material(
+        r#"<bsdf type="principled"><float name="clearcoat" value="1"/></bsdf>"#,
+        "principled basecolor=Rgb([[0.5, 0.5, 0.5]]) clearcoat=Floats([1.0]) clearcoatroughness=Floats([0.31622776])",
+    );
+}
+
+/// A sensor without a film has Mitsuba's: 768 x 576 pixels and a Gaussian filter.
+#[test]
+fn sensors_without_film() {
+    let content = content(&read(r#"<sensor type="perspective"/>"#));
+    assert_eq!(content[0], "rgb xresolution=Integers([768]) yresolution=Integers([576])");
+    assert!(content.iter().any(|line| line.starts_with("gaussian ")), "{content:?}");
+}
