@@ -25,13 +25,20 @@ pub fn compute_normals(mesh: &mut LoadedMesh) {
 
 /// Cuts every bilinear patch into two triangles, which follow those that are there.
 pub fn split_quads(mesh: &mut LoadedMesh) {
-    let n = mesh.triangles.len();
+    let (n, n_quads) = (mesh.triangles.len(), mesh.quads.len());
     for [a, b, d, c] in std::mem::take(&mut mesh.quads) {
         mesh.triangles.extend([[a, b, c], [a, c, d]]);
     }
     if mesh.face_indices.len() > n {
         let quads = mesh.face_indices.split_off(n);
         mesh.face_indices.extend(quads.into_iter().flat_map(|index| [index; 2]));
+    }
+    for attribute in mesh.attributes.iter_mut().filter(|a| a.domain == AttributeDomain::Face) {
+        let width = attribute.n_components;
+        if n_quads > 0 && width > 0 && attribute.values.len() == (n + n_quads) * width {
+            let quads = attribute.values.split_off(n * width);
+            attribute.values.extend(quads.chunks_exact(width).flat_map(|value| [value; 2].concat()));
+        }
     }
 }
 
@@ -54,6 +61,10 @@ pub fn smooth_but_creases(mesh: &mut LoadedMesh, crease_degrees: f32) {
         made.push(triangle.map(|vertex| {
             let fan = around.of(vertex);
             let is_large = fan.len() > MAX_COMPARED;
+            // All corners of a large fan have the same normal.
+            if is_large && let Some((_, copy)) = copies[vertex as usize].first() {
+                return *copy;
+            }
             let sum = fan.iter().fold(Vector3::default(), |sum, other| {
                 match (normals[face], normals[*other as usize]) {
                     (Some(own), Some(other)) if !is_large && own.dot(other) < least => sum,
@@ -138,8 +149,48 @@ fn angle_at(mesh: &LoadedMesh, triangle: &[u32; 3], vertex: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use etendue_math::Point3;
+    use etendue_scene::MeshAttribute;
 
     use super::*;
+
+    /// Both halves of a cut patch have the values of its face.
+    #[test]
+    fn halves_keep_the_values_of_faces() {
+        let colors = MeshAttribute {
+            name: "face_color".to_owned(),
+            domain: AttributeDomain::Face,
+            n_components: 2,
+            values: vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+        };
+        let mut mesh = LoadedMesh {
+            positions: vec![Point3::ORIGIN; 4],
+            triangles: vec![[0, 1, 2]],
+            quads: vec![[0, 1, 2, 3]; 2],
+            attributes: vec![colors],
+            ..LoadedMesh::default()
+        };
+        split_quads(&mut mesh);
+        assert_eq!(mesh.triangles.len(), 5);
+        assert_eq!(mesh.attributes[0].values, [1.0, 2.0, 3.0, 4.0, 3.0, 4.0, 5.0, 6.0, 5.0, 6.0]);
+    }
+
+    /// The time that a large fan takes grows with its triangles: with their square it would be minutes here.
+    #[test]
+    fn large_fans_are_folded_once() {
+        let n = 300_000;
+        let rim = |i: u32| {
+            let (sin, cos) = (i as f32 * std::f32::consts::TAU / n as f32).sin_cos();
+            Point3::new(cos, sin, 0.0)
+        };
+        let mut mesh = LoadedMesh {
+            positions: [Point3::ORIGIN].into_iter().chain((0..n).map(rim)).collect(),
+            triangles: (0..n).map(|i| [0, 1 + i, 1 + (i + 1) % n]).collect(),
+            ..LoadedMesh::default()
+        };
+        smooth_but_creases(&mut mesh, 40.0);
+        assert_eq!(mesh.positions.len(), n as usize + 1);
+        assert!(mesh.normals[0].z > 0.999);
+    }
 
     /// A strip that is bent by 20 degrees is smooth there, and by 90 degrees has an edge.
     #[test]

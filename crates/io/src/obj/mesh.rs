@@ -9,7 +9,7 @@ use super::parse::{Corner, Face, NONE, ObjFile};
 use super::polygon::triangulate;
 
 /// Which normal a corner has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum NormalKey {
     /// None: the facet's own.
     Flat,
@@ -46,18 +46,28 @@ struct Welded {
     next: u32,
 }
 
-/// Vertices of a mesh by the positions of the file: a chain for each, so that no hashing is needed.
+/// Vertices in the chain of a position; more are found by hashing, since to walk a long chain takes too long.
+const MAX_CHAIN: usize = 16;
+
+/// Vertices of a mesh by the positions of the file: a chain for each, so that ordinary files need no hashing.
 struct Weld {
     /// The first vertex of each position.
     first: Vec<u32>,
     vertices: Vec<Welded>,
     /// Positions that have vertices.
     touched: Vec<u32>,
+    /// What no chain has room for, by position, texture coordinate and normal.
+    further: HashMap<(u32, u32, NormalKey), u32>,
 }
 
 impl Weld {
     fn new(n_positions: usize) -> Self {
-        Self { first: vec![NONE; n_positions], vertices: Vec::new(), touched: Vec::new() }
+        Self {
+            first: vec![NONE; n_positions],
+            vertices: Vec::new(),
+            touched: Vec::new(),
+            further: HashMap::new(),
+        }
     }
 
     fn clear(&mut self) {
@@ -65,21 +75,33 @@ impl Weld {
             self.first[position as usize] = NONE;
         }
         self.vertices.clear();
+        self.further.clear();
     }
 
     /// The vertex of that kind, and whether it is new. The normal of a face is its own and needs no search.
     fn vertex(&mut self, corner: &Corner, normal: NormalKey) -> (u32, bool) {
+        let new = self.vertices.len() as u32;
         let head = self.first[corner.position as usize];
-        let mut at = if matches!(normal, NormalKey::Face(_)) { NONE } else { head };
+        self.vertices.push(Welded { uv: corner.uv, normal, next: head });
+        if matches!(normal, NormalKey::Face(_)) {
+            return (new, true);
+        }
+        let (mut at, mut n_steps) = (head, 0);
         while at != NONE {
             let known = &self.vertices[at as usize];
             if known.uv == corner.uv && known.normal == normal {
+                self.vertices.pop();
                 return (at, false);
             }
-            at = known.next;
+            (at, n_steps) = (known.next, n_steps + 1);
         }
-        let new = self.vertices.len() as u32;
-        self.vertices.push(Welded { uv: corner.uv, normal, next: head });
+        if n_steps == MAX_CHAIN {
+            let found = *self.further.entry((corner.position, corner.uv, normal)).or_insert(new);
+            if found != new {
+                self.vertices.pop();
+            }
+            return (found, found == new);
+        }
         self.first[corner.position as usize] = new;
         if head == NONE {
             self.touched.push(corner.position);

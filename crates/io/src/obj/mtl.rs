@@ -4,7 +4,10 @@
 use etendue_scene::diagnostics::FileId;
 use etendue_scene::{Diagnostics, Span};
 
-use super::parse::rest_of;
+use super::parse::{name_after, rest_of};
+
+/// Problems of a library that are reported one by one.
+const MAX_PROBLEMS: usize = 100;
 
 /// Materials of a library.
 const MAX_MATERIALS: usize = 1_000_000;
@@ -84,13 +87,17 @@ const SKIPPED: [&str; 7] = ["Ka", "Km", "sharpness", "anisor", "Pa", "map_RMA", 
 pub(super) fn parse(text: &str, file: FileId, diagnostics: &mut Diagnostics) -> Vec<Mtl> {
     let mut materials: Vec<Mtl> = Vec::new();
     let mut start = 0;
+    let mut n_problems = 0;
     for line in text.split_inclusive('\n') {
         let end = start + line.trim_end().len();
         let span = Span { file, start: start as u32, end: end as u32 };
         start += line.len();
         let content = line.split('#').next().unwrap_or_default();
         let Some(keyword) = content.split_ascii_whitespace().next() else { continue };
-        let rest = rest_of(content, keyword);
+        let is_map = || MAPS.iter().any(|(known, _)| known.eq_ignore_ascii_case(keyword));
+        let is_named = keyword == "newmtl" || is_map();
+        let rest = if is_named { name_after(line, keyword) } else { rest_of(content, keyword) };
+        let mut problems = Diagnostics::default();
         if keyword == "newmtl" {
             if materials.len() >= MAX_MATERIALS {
                 diagnostics.error(span, format!("the library has more than {MAX_MATERIALS} materials"));
@@ -98,9 +105,24 @@ pub(super) fn parse(text: &str, file: FileId, diagnostics: &mut Diagnostics) -> 
             }
             materials.push(empty(rest, span));
         } else if let Some(material) = materials.last_mut() {
-            statement(material, keyword, rest, span, diagnostics);
+            statement(material, keyword, rest, span, &mut problems);
         } else {
-            diagnostics.warning(span, "this stands before any `newmtl`; it is skipped");
+            problems.warning(span, "this stands before any `newmtl`; it is skipped");
+        }
+        if problems.list().is_empty() {
+            continue;
+        }
+        n_problems += 1;
+        // An error must not go unheard, however many warnings came before it; it ends what is of use here.
+        let is_error = problems.has_errors();
+        if n_problems <= MAX_PROBLEMS || is_error {
+            diagnostics.append(problems);
+        }
+        if n_problems == MAX_PROBLEMS {
+            diagnostics.warning(span, "there are more problems in this library; they are not reported");
+        }
+        if n_problems >= MAX_PROBLEMS && is_error {
+            break;
         }
     }
     materials

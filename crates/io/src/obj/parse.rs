@@ -123,7 +123,7 @@ impl<'t> Parser<'_, 't> {
         let content = text.split('#').next().unwrap_or_default();
         let mut words = content.split_ascii_whitespace();
         let Some(keyword) = words.next() else { return };
-        let named = || Name { text: rest_of(content, keyword).to_owned(), span: self.line.span() };
+        let named = || Name { text: name_after(text, keyword).to_owned(), span: self.line.span() };
         match keyword {
             "v" => {
                 if let Some([x, y, z]) = self.numbers(words) {
@@ -253,6 +253,13 @@ fn index(text: &str, what: &str, count: usize) -> Result<u32, String> {
         Some(index) if (index as usize) < count && index != NONE => Ok(index),
         _ => Err(format!("there is no {what} {number}: {count} come before this face")),
     }
+}
+
+/// The name that follows the keyword of a line: in it `#` begins a comment only after white space.
+pub(super) fn name_after<'t>(line: &'t str, keyword: &str) -> &'t str {
+    let rest = rest_of(line, keyword);
+    let comment = rest.match_indices('#').find(|(at, _)| rest[..*at].ends_with([' ', '\t']));
+    comment.map_or(rest, |(at, _)| rest[..at].trim_end())
 }
 
 /// What follows the keyword, with spaces within.

@@ -205,3 +205,50 @@ fn damaged_files_do_not_panic() {
     }
     drop(read_obj_bytes("a.obj", vec![0xff; 100], Path::new("")));
 }
+
+/// The time that a position with many texture coordinates takes grows with their number: with its square it would be
+/// minutes here. Each pair is one vertex.
+#[test]
+fn many_vertices_at_one_position() {
+    let n = 200_000;
+    let mut text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned();
+    (0..n).for_each(|i| text += &format!("vt {i} 0\n"));
+    for _ in 0..2 {
+        (1..=n).for_each(|i| text += &format!("f 1/{i} 2/1 3/1\n"));
+    }
+    let mesh = read(&text);
+    assert_eq!((mesh.positions.len(), mesh.triangles.len()), (n + 2, 2 * n));
+    assert_eq!(mesh.triangles[n - 1], mesh.triangles[2 * n - 1]);
+}
+
+/// `#` within a name belongs to it; after white space it begins a comment.
+#[test]
+fn names_with_hashes() {
+    use super::mtl;
+    use super::parse::parse;
+    let mut diagnostics = Diagnostics::default();
+    let file = etendue_scene::diagnostics::FileId(0);
+    let text = "mtllib a#1.mtl # a comment\nusemtl C#sharp\nusemtl b # another\n";
+    let obj = parse(text, file, &mut diagnostics);
+    assert_eq!(obj.libraries[0].text, "a#1.mtl");
+    let names: Vec<&str> = obj.materials.iter().map(|name| name.text.as_str()).collect();
+    assert_eq!(names, ["", "C#sharp", "b"]);
+    let library = "newmtl C#sharp\nmap_Kd wood#2.png # oak\nKd 1 1 1# white\n";
+    let materials = mtl::parse(library, file, &mut diagnostics);
+    assert_eq!(materials[0].name, "C#sharp");
+    assert_eq!(materials[0].map("kd").expect("a picture").file, "wood#2.png");
+    assert!(diagnostics.list().is_empty());
+}
+
+/// The problems of a library are reported up to a number; errors end it, warnings do not.
+#[test]
+fn problems_of_libraries_are_bounded() {
+    let count = |line: &str| {
+        let mut diagnostics = Diagnostics::default();
+        let text = format!("newmtl a\n{}newmtl b\n", line.repeat(1000));
+        let materials = super::mtl::parse(&text, etendue_scene::diagnostics::FileId(0), &mut diagnostics);
+        (materials.len(), diagnostics.list().len())
+    };
+    assert_eq!(count("unheard_of 1\n"), (2, 101));
+    assert_eq!(count("Ns x\n"), (1, 101));
+}
