@@ -177,6 +177,10 @@ impl<'b> Accessor<'b> {
         };
         let (at, bytes) = part("indices", kind.n_bytes())?;
         let (_, values) = part("values", self.n_components * self.component.n_bytes())?;
+        if !buffers.charge_sparse(count) {
+            file.error(at, "the file uses sparse data too often");
+            return None;
+        }
         let indices: Vec<u32> =
             bytes.chunks_exact(kind.n_bytes()).take(count).map(|b| kind.index(b)).collect();
         let ascend = indices.windows(2).all(|pair| pair[0] < pair[1]);

@@ -1,10 +1,11 @@
 //! Buffers and the views into them.
 
-use std::cell::{OnceCell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::FREE_ELEMENTS;
 use super::container::{data_uri, file_of_uri};
 use super::file::File;
 use crate::file::read_file;
@@ -18,7 +19,11 @@ pub(super) struct Buffers {
     binary: Option<Arc<[u8]>>,
     loaded: Vec<OnceCell<Option<Arc<[u8]>>>>,
     /// Files that several buffers may name.
-    files: RefCell<HashMap<String, Option<Arc<[u8]>>>>,
+    files: RefCell<HashMap<PathBuf, Option<Arc<[u8]>>>>,
+    /// Bytes read so far, those of each file once.
+    n_bytes: Cell<u64>,
+    /// Elements that sparse accessors gave so far.
+    n_sparse: Cell<u64>,
 }
 
 /// Part of a buffer.
@@ -37,6 +42,8 @@ impl Buffers {
             binary: binary.map(Arc::from),
             loaded: vec![OnceCell::new(); n_buffers],
             files: RefCell::default(),
+            n_bytes: Cell::new(0),
+            n_sparse: Cell::new(0),
         }
     }
 
@@ -49,7 +56,10 @@ impl Buffers {
     fn load(&self, file: &File<'_>, buffer: &Json, index: usize) -> Option<Arc<[u8]>> {
         let bytes = match (file.string(buffer, "uri"), &self.binary) {
             (Some(uri), _) => self.uri(file, buffer.get("uri")?, uri)?,
-            (None, Some(binary)) if index == 0 => Arc::clone(binary),
+            (None, Some(binary)) if index == 0 => {
+                self.count(binary);
+                Arc::clone(binary)
+            }
             (None, _) => {
                 file.error(buffer, "\"uri\" is missing, and the file has no binary chunk for this buffer");
                 return None;
@@ -66,22 +76,46 @@ impl Buffers {
 
     fn uri(&self, file: &File<'_>, at: &Json, uri: &str) -> Option<Arc<[u8]>> {
         if let Some(content) = data_uri(uri) {
-            return content.map(Arc::from).map_err(|why| file.error(at, why)).ok();
+            let bytes: Arc<[u8]> = content.map(Arc::from).map_err(|why| file.error(at, why)).ok()?;
+            self.count(&bytes);
+            return Some(bytes);
         }
         let name = file_of_uri(uri).map_err(|why| file.error(at, why)).ok()?;
+        let path = self.base.join(&name);
+        // Several names of a file are one.
+        let key = path.canonicalize().unwrap_or_else(|_| path.clone());
         let mut files = self.files.borrow_mut();
         let read = || {
-            let bytes = read_file(&self.base.join(&name));
-            bytes.map(Arc::from).map_err(|error| file.error(at, error.to_string())).ok()
+            let bytes: Arc<[u8]> = match read_file(&path) {
+                Ok(bytes) => Arc::from(bytes),
+                Err(error) => {
+                    file.error(at, error.to_string());
+                    return None;
+                }
+            };
+            self.count(&bytes);
+            Some(bytes)
         };
-        files.entry(name.clone()).or_insert_with(read).clone()
+        files.entry(key).or_insert_with(read).clone()
     }
 
-    /// Bytes of all buffers that have been read; files that several buffers name count once for each.
-    pub(super) fn n_bytes(&self) -> u64 {
-        let length =
-            |cell: &OnceCell<Option<Arc<[u8]>>>| cell.get().and_then(Option::as_ref).map_or(0, |b| b.len());
-        self.loaded.iter().map(|cell| length(cell) as u64).sum()
+    fn count(&self, bytes: &[u8]) {
+        self.n_bytes.set(self.n_bytes.get() + bytes.len() as u64);
+    }
+
+    /// Bytes that have been read for buffers; a file that several of them name counts once.
+    pub(super) const fn n_bytes(&self) -> u64 {
+        self.n_bytes.get()
+    }
+
+    /// Takes elements of a sparse accessor from those that the file may have; false if there are too many.
+    pub(super) fn charge_sparse(&self, count: usize) -> bool {
+        let spent = self.n_sparse.get().saturating_add(count as u64);
+        let is_left = spent <= self.n_bytes() + FREE_ELEMENTS;
+        if is_left {
+            self.n_sparse.set(spent);
+        }
+        is_left
     }
 
     /// The buffer view that the member `name` of `object` refers to.

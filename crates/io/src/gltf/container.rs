@@ -88,7 +88,7 @@ fn percent_decoded(text: &str) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The file that a URI names, relative to the scene.
+/// The file that a URI names, relative to the folder of the scene; like those of other formats it may lie elsewhere.
 ///
 /// # Errors
 /// If it has a scheme, is badly encoded or no text.
@@ -96,9 +96,7 @@ pub(super) fn file_of_uri(uri: &str) -> Result<String, String> {
     let scheme = uri.split_once(':').map(|(scheme, _)| scheme);
     // One letter is a drive of Windows.
     if let Some(scheme) = scheme.filter(|s| s.len() > 1 && s.bytes().all(|b| b.is_ascii_alphanumeric())) {
-        return Err(format!(
-            "the URI has the scheme `{scheme}:`; only files beside the scene and data: are read"
-        ));
+        return Err(format!("the URI has the scheme `{scheme}:`; only data: and names of files are read"));
     }
     let bytes = percent_decoded(uri)?;
     let path = String::from_utf8(bytes).map_err(|_| "the URI is no UTF-8 text".to_owned())?;

@@ -137,6 +137,10 @@ impl<'a> Reader<'a> {
     /// A surface that shows its colour whatever the light: a black one that emits it, in cd/m².
     fn unlit(&mut self, draft: &mut Draft<'a>) -> Surface {
         draft.entity = Entity::new("diffuse").with("reflectance", rgb([0.0; 3]));
+        if draft.is_tinted {
+            let message = "colours of vertices (COLOR_0) do not tint KHR_materials_unlit; they are left out";
+            self.file.warning(draft.json, message);
+        }
         let none = self.file.object(draft.json, "pbrMetallicRoughness");
         let factor = none.and_then(|pbr| self.file.floats(pbr, "baseColorFactor")).unwrap_or([1.0; 4]);
         let texture = none.and_then(|pbr| self.file.object(pbr, "baseColorTexture"));

@@ -32,7 +32,7 @@ use etendue_scene::diagnostics::FileId;
 use etendue_scene::document::Entity;
 use etendue_scene::{Diagnostics, Document, Span};
 
-use crate::file::{decompressed, read_file};
+use crate::file::{decompressed, read_given_file};
 use crate::json::{Json, JsonError, Kind};
 use crate::stage::{Ground, Up, set_stage};
 use buffers::Buffers;
@@ -76,13 +76,16 @@ const REPORTED_WHERE_USED: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_
 /// data over and over.
 const FREE_ELEMENTS: u64 = 1 << 24;
 
+/// What an instance, or a further shape of the same mesh, counts as: it takes memory like so many vertices and triangles.
+const PER_INSTANCE: usize = 32;
+
 /// Reads a glTF or GLB file; files that it names are read too, but for pictures, which are left to
 /// [`load_assets`](crate::load_assets). What the file lacks of camera and lights comes from [`set_stage`].
 ///
 /// The document is as complete as the errors in the diagnostics allow.
 #[must_use]
 pub fn read_gltf(path: &Path) -> (Document, Diagnostics) {
-    let bytes = match read_file(path) {
+    let bytes = match read_given_file(path) {
         Ok(bytes) => bytes,
         Err(error) => return failed(error.to_string()),
     };

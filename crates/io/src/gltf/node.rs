@@ -15,7 +15,7 @@ use super::file::span;
 use super::material::Surface;
 use super::matrix::Matrix;
 use super::mesh::Wanted;
-use super::{Reader, located};
+use super::{PER_INSTANCE, Reader, located};
 use crate::json::Json;
 
 /// All nodes with their place in the world.
@@ -181,7 +181,7 @@ impl<'a> Reader<'a> {
         let (translation, rotation, scale) = (read("TRANSLATION", 3), read("ROTATION", 4), read("SCALE", 3));
         let counts = [&translation, &rotation, &scale].map(|accessor| accessor.as_ref().map(|a| a.count));
         let Some(count) = counts.into_iter().flatten().min() else { return vec![world] };
-        if self.charge(extension, count).is_none() {
+        if self.charge(extension, count.saturating_mul(PER_INSTANCE)).is_none() {
             return Vec::new();
         }
         let place = |i: usize| {
@@ -218,7 +218,8 @@ impl<'a> Reader<'a> {
             let Some(shape) = self.shape(primitive, &part, &surface, &wanted) else { continue };
             // Shapes of objects cannot be lights.
             if n_more == 0 || shape.area_light.is_some() {
-                if self.charge(primitive, self.n_elements(&shape).saturating_mul(n_more)).is_none() {
+                let each = self.n_elements(&shape).saturating_add(PER_INSTANCE);
+                if self.charge(primitive, each.saturating_mul(n_more)).is_none() {
                     continue;
                 }
                 for transform in &transforms {

@@ -187,3 +187,66 @@ fn compression() {
         "/bufferViews/0: the view is compressed by meshopt",
     );
 }
+
+/// Instances take more memory than vertices, and count as such.
+#[test]
+fn instances() {
+    let json = r#"{"asset": {"version": "2.0"}, "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"},
+        {"componentType": 5126, "count": 1000000, "type": "VEC3"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "nodes": [{"mesh": 0, "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 1}}}}]}"#;
+    let (_, diagnostics) = read(json.as_bytes().to_vec());
+    assert!(messages(&diagnostics)[0].contains("too often"), "{:?}", messages(&diagnostics));
+}
+
+/// Sparse data that many accessors share count for each of them.
+#[test]
+fn sparse_data() {
+    let n = 2_000_000_u32;
+    let mut bytes: Vec<u8> = (0..n).flat_map(u32::to_le_bytes).collect();
+    bytes.resize(bytes.len() + n as usize * 12, 0);
+    let accessor = format!(
+        r#"{{"componentType": 5126, "count": {n}, "type": "VEC3", "sparse": {{"count": {n},
+        "indices": {{"bufferView": 0, "componentType": 5125}}, "values": {{"bufferView": 1}}}}}}"#
+    );
+    let indices = r#"{"componentType": 5125, "count": 3, "type": "SCALAR"}"#;
+    let primitive = r#"{"attributes": {"POSITION": 0}, "indices": 1}"#;
+    let json = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "buffers": [{{"byteLength": {}}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": {}}}, {{"buffer": 0, "byteOffset": {}, "byteLength": {}}}],
+        "accessors": [{accessor}, {indices}], "meshes": [{{"primitives": [{}]}}], "nodes": [{{"mesh": 0}}]}}"#,
+        bytes.len(),
+        4 * n,
+        4 * n,
+        12 * n,
+        [primitive; 40].join(",")
+    );
+    let (_, diagnostics) = read(glb(&json, &bytes));
+    let found = messages(&diagnostics);
+    assert!(found.iter().any(|message| message.contains("sparse data too often")), "{found:?}");
+}
+
+/// A file that many buffers name is read and counted once.
+#[test]
+fn shared_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("a.bin"), vec![0; 1 << 20]).expect("written");
+    let buffers: Vec<String> = (0..200).map(|i| format!(r#"{{"uri": "{}a.bin"}}"#, "./".repeat(i))).collect();
+    let views: Vec<String> =
+        (0..200).map(|i| format!(r#"{{"buffer": {i}, "byteLength": 1048576}}"#)).collect();
+    let accessor =
+        |i| format!(r#"{{"bufferView": {i}, "componentType": 5126, "count": 87000, "type": "VEC3"}}"#);
+    let accessors: Vec<String> = (0..200).map(accessor).collect();
+    let primitive = |i| format!(r#"{{"attributes": {{"POSITION": {i}}}}}"#);
+    let primitives: Vec<String> = (0..200).map(primitive).collect();
+    let json = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "buffers": [{}], "bufferViews": [{}], "accessors": [{}],
+        "meshes": [{{"primitives": [{}]}}], "nodes": [{{"mesh": 0}}]}}"#,
+        buffers.join(","),
+        views.join(","),
+        accessors.join(","),
+        primitives.join(",")
+    );
+    let (_, diagnostics) = read_gltf_bytes("test.gltf", json.into_bytes(), folder.path());
+    assert!(messages(&diagnostics)[0].contains("too often"), "{:?}", messages(&diagnostics));
+}

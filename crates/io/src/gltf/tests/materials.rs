@@ -228,3 +228,15 @@ fn vertex_colors() {
     let (scene, problems) = Scene::build(&made, load_assets(&made).0);
     assert!(scene.is_some(), "{:?}", messages(&problems));
 }
+
+/// A surface without light is a source, whose colour cannot vary over vertices: that is told.
+#[test]
+fn vertex_colors_of_unlit_surfaces() {
+    let mut data = Data::default();
+    let (p, c) = (data.floats("VEC3", &TRIANGLE), data.floats("VEC3", &[0.5; 9]));
+    let (_, diagnostics) = read(data.file(&format!(
+        r#""nodes": [{{"mesh": 0}}], "materials": [{{"extensions": {{"KHR_materials_unlit": {{}}}}}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": {p}, "COLOR_0": {c}}}, "material": 0}}]}}]"#
+    )));
+    assert!(messages(&diagnostics)[0].contains("COLOR_0"), "{:?}", messages(&diagnostics));
+}
