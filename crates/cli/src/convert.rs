@@ -1,6 +1,6 @@
 //! `etendue convert`: any readable scene as a pbrt-v4 scene.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use etendue::image::{Encoding, Image, Texels};
@@ -21,11 +21,43 @@ pub(crate) fn run(arguments: &ConvertArguments) -> Result<()> {
     if diagnostics.has_errors() {
         return Err(Failure::Scene);
     }
-    write_out_tangents(&mut document);
-    let files = Files::of(&mut document, output);
+    for name in write_out_tangents(&mut document) {
+        if !quiet {
+            let message = format!("the mesh `{name}` keeps its attributes, but its tangents are left out");
+            report::warning(&message);
+        }
+    }
+    let made = make_folder(output)?;
+    let result = write(&mut document, output);
+    if result.is_err() {
+        // Those with something in them stay.
+        made.iter().for_each(|folder| drop(std::fs::remove_dir(folder)));
+    }
+    result
+}
+
+fn write(document: &mut Document, output: &Path) -> Result<()> {
+    let files = Files::of(document, output)?;
     files.write(output)?;
-    let text = write_pbrt(&document);
+    let text = write_pbrt(document);
     write_bytes(output, text.as_bytes())
+}
+
+/// Makes the folder of the output, so that names of files can be given as seen from it. What was made comes back, inner
+/// folders first.
+fn make_folder(output: &Path) -> Result<Vec<PathBuf>> {
+    let folder = output.parent().unwrap_or(Path::new(""));
+    let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+    let missing = folder.ancestors().take_while(is_missing).map(Path::to_owned).collect::<Vec<_>>();
+    if !missing.is_empty() {
+        make_folders(folder)?;
+    }
+    Ok(missing)
+}
+
+fn make_folders(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| Failure::Running(format!("cannot make the folder '{}': {error}", folder.display())))
 }
 
 fn check_paths(scene: &Path, output: &Path) -> Result<()> {
@@ -46,8 +78,10 @@ fn check_paths(scene: &Path, output: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Meshes with tangents become `trianglemesh`es in the scene itself, since PLY files have none.
-fn write_out_tangents(document: &mut Document) {
+/// Meshes with tangents become `trianglemesh`es in the scene itself, since PLY files have none. Only PLY files have colours
+/// and other attributes, which matter more: meshes with both come back by name, and lose their tangents.
+fn write_out_tangents(document: &mut Document) -> BTreeSet<String> {
+    let mut with_both = BTreeSet::new();
     let embedded = &document.embedded;
     let mut written: Vec<String> = Vec::new();
     let shapes = document.objects.iter_mut().flat_map(|object| &mut object.shapes);
@@ -59,6 +93,10 @@ fn write_out_tangents(document: &mut Document) {
             continue;
         };
         if entity.type_name != "plymesh" || mesh.tangents.is_empty() || !mesh.quads.is_empty() {
+            continue;
+        }
+        if !mesh.attributes.is_empty() {
+            with_both.extend(names.first().cloned());
             continue;
         }
         let indices = mesh.triangles.iter().flatten().map(|vertex| *vertex as i32).collect();
@@ -77,6 +115,7 @@ fn write_out_tangents(document: &mut Document) {
         entity.parameters.extend(given.map(|(name, value)| Parameter::new(name, value)));
     }
     document.embedded.retain(|name, _| !written.contains(name));
+    with_both
 }
 
 /// True for a list without values.
@@ -100,7 +139,9 @@ struct Files {
 impl Files {
     /// Gives all file names of the document the meaning that they have for the output: embedded ones get a name in a folder
     /// of its own, others become relative to the output, or absolute.
-    fn of(document: &mut Document, output: &Path) -> Self {
+    fn of(document: &mut Document, output: &Path) -> Result<Self> {
+        let from = canonical(&document.base_directory)?;
+        let to = canonical(output.parent().unwrap_or(Path::new("")))?;
         let stem =
             output.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let embedded = std::mem::take(&mut document.embedded);
@@ -118,8 +159,6 @@ impl Files {
             names.insert(name, new.clone());
             contents.insert(new, file);
         }
-        let from = document.base_directory.clone();
-        let to = output.parent().map(Path::to_owned).unwrap_or_default();
         let rename = |name: &mut String| match names.get(name.as_str()) {
             Some(new) => name.clone_from(new),
             None => {
@@ -129,7 +168,7 @@ impl Files {
             }
         };
         each_file_name(document, rename);
-        Self { contents }
+        Ok(Self { contents })
     }
 
     /// All files appear before the scene that names them.
@@ -138,9 +177,7 @@ impl Files {
         for (name, content) in &self.contents {
             let path = folder.join(name);
             if let Some(parent) = path.parent() {
-                std::fs::create_dir_all(parent).map_err(|error| {
-                    Failure::Running(format!("cannot make the folder '{}': {error}", parent.display()))
-                })?;
+                make_folders(parent)?;
             }
             match content {
                 EmbeddedFile::Mesh(mesh) => write_bytes(&path, &write_ply(mesh))?,
@@ -189,19 +226,23 @@ fn extension_of(bytes: &[u8]) -> &'static str {
     }
 }
 
-/// The name that a file has seen from another folder; `None` if it may stay.
+/// The folder without links and dots.
+fn canonical(folder: &Path) -> Result<PathBuf> {
+    let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    here.canonicalize()
+        .map_err(|error| Failure::Running(format!("cannot find the folder '{}': {error}", here.display())))
+}
+
+/// The name that a file has seen from another folder, both of them canonical; `None` if it may stay.
 fn moved(from: &Path, to: &Path, name: &str) -> Option<String> {
     let path = Path::new(name);
     if name.is_empty() || path.is_absolute() {
         return None;
     }
-    let here =
-        |folder: &Path| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_owned() };
-    let (from, to) = (here(from).canonicalize().ok()?, here(to).canonicalize().ok()?);
     if from == to {
         return None;
     }
-    let relative = from.strip_prefix(&to).map_or_else(|_| from.join(path), |inside| inside.join(path));
+    let relative = from.strip_prefix(to).map_or_else(|_| from.join(path), |inside| inside.join(path));
     Some(relative.to_string_lossy().replace('\\', "/"))
 }
 
@@ -210,6 +251,10 @@ fn each_file_name(document: &mut Document, rename: impl Fn(&mut String)) {
     let entity = |entity: &mut Entity| {
         for parameter in &mut entity.parameters {
             match &mut parameter.value {
+                // Apertures without a point are shapes that are built in.
+                Value::Strings(names) if parameter.name == "aperture" => {
+                    names.iter_mut().filter(|name| name.contains('.')).for_each(&rename);
+                }
                 Value::Strings(names) if is_file(&parameter.name) => names.iter_mut().for_each(&rename),
                 // Names of spectra are files if they look like some.
                 Value::SpectrumNames(names) => {
@@ -231,13 +276,67 @@ fn each_file_name(document: &mut Document, rename: impl Fn(&mut String)) {
 
 /// Parameters that name files to be read.
 fn is_file(name: &str) -> bool {
-    name.contains("filename")
-        || matches!(name, "normalmap" | "clearcoatnormalmap" | "lensfile" | "aperture" | "file")
+    name.contains("filename") || matches!(name, "normalmap" | "clearcoatnormalmap" | "lensfile" | "file")
 }
 
 #[cfg(test)]
 mod tests {
+    use etendue::math::{AnimatedTransform, Point3, Transform, Vector3};
+    use etendue::scene::document::{CameraEntity, MaterialReference, ShapeEntity};
+    use etendue::scene::{AttributeDomain, LoadedMesh, MeshAttribute};
+
     use super::*;
+
+    /// Names of built-in apertures stay, and those of files move with the scene.
+    #[test]
+    fn built_in_apertures_are_no_files() {
+        let renamed = |name: &str| {
+            let aperture = Value::Strings(vec![name.to_owned()]);
+            let camera = CameraEntity {
+                entity: Entity::new("realistic").with("aperture", aperture),
+                world_from_camera: AnimatedTransform::constant(Transform::IDENTITY),
+                medium: String::new(),
+            };
+            let mut document = Document { camera: Some(camera), ..Document::default() };
+            each_file_name(&mut document, |name| name.insert_str(0, "moved/"));
+            document.camera.map(|camera| camera.entity.parameters[0].value.clone())
+        };
+        let strings = |name: &str| Some(Value::Strings(vec![name.to_owned()]));
+        assert_eq!(renamed("pentagon"), strings("pentagon"));
+        assert_eq!(renamed("blades.png"), strings("moved/blades.png"));
+    }
+
+    /// A mesh with colours and tangents keeps the colours, which only its file can hold.
+    #[test]
+    fn colors_outlive_tangents() {
+        let colors = MeshAttribute {
+            name: "vertex_color".to_owned(),
+            domain: AttributeDomain::Vertex,
+            n_components: 3,
+            values: vec![0.5; 9],
+        };
+        let mesh = LoadedMesh {
+            positions: vec![Point3::ORIGIN; 3],
+            tangents: vec![Vector3::new(1.0, 0.0, 0.0); 3],
+            triangles: vec![[0, 1, 2]],
+            attributes: vec![colors],
+            ..LoadedMesh::default()
+        };
+        let mut document = Document::default();
+        let name = document.embed("mesh", EmbeddedFile::Mesh(mesh.into()));
+        document.shapes.push(ShapeEntity {
+            entity: Entity::new("plymesh").with("filename", Value::Strings(vec![name.clone()])),
+            world_from_object: AnimatedTransform::constant(Transform::IDENTITY),
+            reverse_orientation: false,
+            material: MaterialReference::Index(0),
+            area_light: None,
+            inside_medium: String::new(),
+            outside_medium: String::new(),
+            has_medium_interface: false,
+        });
+        assert!(write_out_tangents(&mut document).contains(&name));
+        assert!(document.embedded.contains_key(&name) && document.shapes[0].entity.type_name == "plymesh");
+    }
 
     /// Names of parts become names of files, without folders and spaces.
     #[test]

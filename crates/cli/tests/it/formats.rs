@@ -200,10 +200,13 @@ fn conversion_into_another_folder() {
     folder.run("convert in/cube.obj in/cube.pbrt").expect(0);
     folder.run("convert in/cube.pbrt out/again.pbrt").expect(0);
     folder.run("convert in/cube.pbrt below.pbrt").expect(0);
+    // A folder that is not there yet is made before names are given as seen from it.
+    folder.run("convert in/cube.pbrt new/folder/again.pbrt").expect(0);
     let bits = |name: &str| {
         folder.run(&format!("render {name} -q --spp 1 --resolution 16x16 -o x.pfm")).expect(0);
         folder.read("x.pfm")
     };
     let expected = bits("in/cube.pbrt");
     assert!(bits("out/again.pbrt") == expected && bits("below.pbrt") == expected);
+    assert!(bits("new/folder/again.pbrt") == expected);
 }
