@@ -3,7 +3,8 @@
 //! An [`Expression`] has up to three variables. It is a flat list of steps without repetition, which the same short
 //! program runs on numbers, on intervals (so that the result holds every value that the formula takes in a box), and on
 //! either with derivatives carried along (forward mode; Griewank and Walther 2008, *Evaluating Derivatives*, chapter 3;
-//! Moore 1966, *Interval Analysis*). Outside of the domain of a function the value is NaN; an interval leaves such points out.
+//! Moore 1966, *Interval Analysis*). Outside of the domain of a function the value is NaN, which no
+//! comparison or `if` makes a number again; an interval leaves such points out.
 //!
 //! What may be written: numbers, names, `+ - * / ^`, comparisons `< <= > >= == !=`, `&& || !`, which give 1 or 0, and the functions
 //! of [`FUNCTIONS`]. `^` binds before a sign, and to the right: -x^2 = -(x^2), 2^3^2 = 2^9.

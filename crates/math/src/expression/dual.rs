@@ -125,7 +125,7 @@ impl<T: Scalar, const N: usize> Number for Dual<T, N> {
             Some(true) => a,
             Some(false) => b,
             // There may be a jump.
-            None => Self::with(T::hull(a.value, b.value), |_| T::unknown()),
+            None => Self::with(T::select(condition.value, a.value, b.value), |_| T::unknown()),
         }
     }
 }

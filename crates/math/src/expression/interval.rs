@@ -278,6 +278,9 @@ impl Number for Interval {
     }
 
     fn select(condition: Self, a: Self, b: Self) -> Self {
+        if condition.is_empty() {
+            return condition;
+        }
         match condition.truth() {
             Some(true) => a,
             Some(false) => b,
@@ -292,7 +295,9 @@ impl Scalar for Interval {
     }
 
     fn is_less(a: Self, b: Self) -> Option<bool> {
-        if a.high < b.low {
+        if a.is_empty() || b.is_empty() {
+            None
+        } else if a.high < b.low {
             Some(true)
         } else if a.low >= b.high {
             Some(false)

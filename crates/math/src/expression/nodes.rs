@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::number::Number;
+use super::number::{Number, Scalar};
 
 /// Index of a node; operands come before what uses them.
 pub(super) type NodeId = u32;
@@ -166,8 +166,11 @@ impl Nodes {
 
     pub(super) fn select(&mut self, condition: NodeId, a: NodeId, b: NodeId) -> NodeId {
         match self.constant_of(condition) {
-            Some(0.0) => b,
-            Some(_) => a,
+            Some(value) => match Scalar::truth(value) {
+                Some(true) => a,
+                Some(false) => b,
+                None => condition,
+            },
             None if a == b => a,
             None => self.add(Node::Select(condition, a, b)),
         }

@@ -8,7 +8,7 @@ pub(super) trait Number: Copy {
     fn unary(f: Unary, a: Self) -> Self;
     fn binary(f: Binary, a: Self, b: Self) -> Self;
     fn power(self, n: i32) -> Self;
-    /// `a` where the condition is not 0, else `b`.
+    /// `a` where the condition is not 0, else `b`; nothing where the condition has no value.
     fn select(condition: Self, a: Self, b: Self) -> Self;
 }
 
@@ -16,9 +16,9 @@ pub(super) trait Number: Copy {
 pub(super) trait Scalar: Number {
     /// True if nothing but 0.
     fn is_zero(self) -> bool;
-    /// Whether all of `a` are less than all of `b`, or none is; `None` if that depends.
+    /// Whether all of `a` are less than all of `b`, or none is; `None` if that depends, or if one has no value.
     fn is_less(a: Self, b: Self) -> Option<bool>;
-    /// Whether a condition holds; `None` if that depends.
+    /// Whether a condition holds; `None` if that depends, or if it has no value.
     fn truth(self) -> Option<bool>;
     /// What holds both.
     fn hull(a: Self, b: Self) -> Self;
@@ -34,6 +34,11 @@ const fn truth(condition: bool) -> f64 {
     if condition { 1.0 } else { 0.0 }
 }
 
+/// A function that is not defined where an operand is not, so that an interval may leave such points out.
+fn defined(a: f64, b: f64, value: impl FnOnce(f64, f64) -> f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { value(a, b) }
+}
+
 impl Number for f64 {
     fn constant(value: f64) -> Self {
         value
@@ -44,7 +49,7 @@ impl Number for f64 {
         match f {
             Unary::Neg => -a,
             Unary::Abs => a.abs(),
-            Unary::Sign => truth(a > 0.0) - truth(a < 0.0),
+            Unary::Sign => defined(a, a, |a, _| truth(a > 0.0) - truth(a < 0.0)),
             Unary::Sqrt => a.sqrt(),
             Unary::Exp => a.exp(),
             Unary::Log => a.ln(),
@@ -58,7 +63,7 @@ impl Number for f64 {
             Unary::Cosh => a.cosh(),
             Unary::Tanh => a.tanh(),
             Unary::Floor => a.floor(),
-            Unary::Not => truth(a == 0.0),
+            Unary::Not => defined(a, a, |a, _| truth(a == 0.0)),
         }
     }
 
@@ -69,18 +74,16 @@ impl Number for f64 {
             Binary::Sub => a - b,
             Binary::Mul => a * b,
             Binary::Div => a / b,
-            Binary::Min if a.is_nan() || b.is_nan() => Self::NAN,
-            Binary::Min => a.min(b),
-            Binary::Max if a.is_nan() || b.is_nan() => Self::NAN,
-            Binary::Max => a.max(b),
+            Binary::Min => defined(a, b, Self::min),
+            Binary::Max => defined(a, b, Self::max),
             Binary::Atan2 => a.atan2(b),
             Binary::Pow if a < 0.0 => Self::NAN,
-            Binary::Pow => a.powf(b),
-            Binary::Less => truth(a < b),
-            Binary::LessOrEqual => truth(a <= b),
-            Binary::Equal => truth(a == b),
-            Binary::And => truth(a != 0.0 && b != 0.0),
-            Binary::Or => truth(a != 0.0 || b != 0.0),
+            Binary::Pow => defined(a, b, Self::powf),
+            Binary::Less => defined(a, b, |a, b| truth(a < b)),
+            Binary::LessOrEqual => defined(a, b, |a, b| truth(a <= b)),
+            Binary::Equal => defined(a, b, |a, b| truth(a == b)),
+            Binary::And => defined(a, b, |a, b| truth(a != 0.0 && b != 0.0)),
+            Binary::Or => defined(a, b, |a, b| truth(a != 0.0 || b != 0.0)),
         }
     }
 
@@ -91,7 +94,11 @@ impl Number for f64 {
 
     #[inline]
     fn select(condition: Self, a: Self, b: Self) -> Self {
-        if condition == 0.0 { b } else { a }
+        match Scalar::truth(condition) {
+            Some(true) => a,
+            Some(false) => b,
+            None => Self::NAN,
+        }
     }
 }
 
@@ -101,11 +108,11 @@ impl Scalar for f64 {
     }
 
     fn is_less(a: Self, b: Self) -> Option<bool> {
-        Some(a < b)
+        a.partial_cmp(&b).map(|order| order.is_lt())
     }
 
     fn truth(self) -> Option<bool> {
-        Some(self != 0.0)
+        (!self.is_nan()).then_some(self != 0.0)
     }
 
     fn hull(a: Self, _: Self) -> Self {

@@ -113,14 +113,17 @@ impl Parser<'_> {
             let is_power = matches!(operator, Operator::Power);
             let right = self.expression(if is_power { *precedence } else { precedence + 1 })?;
             left = self.apply(*operator, left, right);
-            if self.nodes.as_slice().len() > Nodes::MAX {
-                return Err(
-                    self.error(self.position, format!("the formula has more than {} steps", Nodes::MAX))
-                );
-            }
+            self.check_size()?;
         }
         self.depth -= 1;
         Ok(left)
+    }
+
+    fn check_size(&self) -> Result<()> {
+        if self.nodes.as_slice().len() <= Nodes::MAX {
+            return Ok(());
+        }
+        Err(self.error(self.position, format!("the formula has more than {} steps", Nodes::MAX)))
     }
 
     fn apply(&mut self, operator: Operator, left: NodeId, right: NodeId) -> NodeId {
@@ -243,6 +246,7 @@ impl Parser<'_> {
         if arguments.len() < function.least || arguments.len() > function.most {
             return Err(self.error(start, wrong_count(function, arguments.len())));
         }
+        self.check_size()?;
         Ok(match function.meaning {
             Meaning::Unary(f) => self.nodes.unary(f, arguments[0]),
             Meaning::Binary(f) => self.nodes.binary(f, arguments[0], arguments[1]),

@@ -1,4 +1,4 @@
-use super::nodes::Binary;
+use super::nodes::{Binary, Nodes};
 use super::number::Number;
 use super::*;
 use crate::Rng;
@@ -30,6 +30,10 @@ const FORMULAS: &[&str] = &[
     "if(x < y, x*z, y + 1) + (x >= 0 && y <= 0.2) - (!(z > 0) || x == y) + (x != z)",
     "(x^2 + 2.25*y^2 + z^2 - 1)^3 - x^2*z^3 - 0.1125*y^2*z^3",
     "x^0.5 + abs(y)^1.7",
+    "if(sqrt(x) >= 0, 1, z)",
+    "z + (sqrt(x) < 2) + sign(log(y))",
+    "if(!(log(x) < y), z, -z) + (sqrt(y) && z) - (asin(2*x) || sqrt(z) == 1)",
+    "min(sqrt(x), y) + max(z, log(y)) + pow(sqrt(z), 0 * x) + if(x < sqrt(y), 1, 2)",
     "cos(1e3*x) + sin(20*y+z)",
 ];
 
@@ -102,9 +106,24 @@ fn size_is_bounded() {
     assert!(error(&"w".repeat(60_000)).message.len() < 100);
     let many: String = (0..11_000).map(|i| format!("x*{i}+")).collect();
     assert!(error(&format!("{many}1")[..]).message.contains("bytes"), "too long");
-    let many: String = (0..9000).map(|i| format!("x^{i}+")).collect();
-    let long = Expression::parse(&many[..many.len() - 1], &["x"], &mut |_| None);
-    assert!(long.is_err() || long.is_ok_and(|e| e.n_steps() <= 1 << 15));
+    let many: String = (0..6000).map(|i| format!("x^{i}.5+")).collect();
+    assert!(error(&many[..many.len() - 1]).message.contains("steps"));
+    // Without an operator in the outermost call: each argument of each call has many steps.
+    let mut number = 0;
+    let mut calls = |n: usize| {
+        let call = |_| {
+            number += 1;
+            format!("smoothstep(x,y,{number})")
+        };
+        (0..n).map(call).collect::<Vec<_>>().join(",")
+    };
+    let rows: Vec<String> = (0..16).map(|_| format!("min({})", calls(16))).collect();
+    let square = |rows: &[String]| format!("max({})", rows.join(","));
+    let below = parse(&square(&rows)).n_steps();
+    assert!(below < Nodes::MAX, "{below}");
+    let more: Vec<String> =
+        (0..8).map(|_| square(&(0..16).map(|_| format!("min({})", calls(16))).collect::<Vec<_>>())).collect();
+    assert!(error(&square(&more)).message.contains("steps"));
     let sum = format!("{}1", "x+".repeat(10_000));
     assert_eq!(parse(&sum).value([1.0; 3]), 10_001.0);
 }
@@ -156,6 +175,32 @@ fn intervals_hold_all_values() {
             }
         }
     }
+}
+
+/// What is not defined does not become so by a comparison: intervals, which leave such points out, would not hold the value.
+#[test]
+fn comparisons_of_nothing_give_nothing() {
+    for text in [
+        "if(sqrt(x) >= 0, 1, z)",
+        "z + (sqrt(x) < 2)",
+        "z + (sqrt(x) != 2)",
+        "!log(x)",
+        "log(x) || 1",
+        "0 && log(x)",
+        "sign(sqrt(x))",
+        "min(sqrt(x), z)",
+        "pow(1, sqrt(x))",
+        "pow(sqrt(x), z - z)",
+        "if(sqrt(x - 5), y, z)",
+        "if(sqrt(-1), y, z)",
+    ] {
+        let formula = parse(text);
+        let at = [-1.0, 0.5, 0.25];
+        assert!(formula.value(at).is_nan() && formula.gradient(at).0.is_nan(), "{text}");
+        assert!(formula.range(at.map(Interval::point)).is_empty(), "{text}");
+        assert!(formula.gradient_range(at.map(Interval::point)).0.is_empty(), "{text}");
+    }
+    assert_eq!(parse("z + (sqrt(x) < 2)").value([1.0, 0.0, 0.25]), 1.25);
 }
 
 /// Differences between points of a box are within the slopes: jumps and kinks included.
