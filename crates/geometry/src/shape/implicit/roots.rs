@@ -2,7 +2,8 @@
 //!
 //! An interval of t is dropped if the values in it exclude zero, or if the slopes do and both ends lie on one side. If the
 //! slopes exclude zero and the ends lie on two sides, there is exactly one zero. Otherwise the ends move inwards as far as the
-//! slopes forbid a zero (Newton's method on intervals), or the interval is halved. At the width of rounding a change of sign
+//! slopes forbid a zero (Newton's method on intervals), or the interval is halved. Slopes say nothing across a pole, where the
+//! values have no bound. At the width of rounding a change of sign
 //! is a zero, and so is a touch; a pole is none.
 
 use etendue_math::expression::Interval;
@@ -63,6 +64,9 @@ pub(super) fn first_root(line: &impl Line, end: f64) -> Option<f64> {
             continue;
         }
         let Slopes { range, slope } = line.slopes(part.a, part.b);
+        // Across a pole a function jumps against its slope.
+        let is_bounded = range.low.is_finite() && range.high.is_finite();
+        let slope = if is_bounded { slope } else { Interval::ENTIRE };
         if !range.contains(0.0) {
             // A bound that people state may be exceeded by rounding.
             if part.changes_sign() {
@@ -79,7 +83,6 @@ pub(super) fn first_root(line: &impl Line, end: f64) -> Option<f64> {
         }
         if part.b - part.a <= finest {
             // Values beyond all bounds mean a pole.
-            let is_bounded = range.low.is_finite() && range.high.is_finite();
             if is_bounded && (part.changes_sign() || slope.magnitude().is_finite()) {
                 return Some(part.a);
             }

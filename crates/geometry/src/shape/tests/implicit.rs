@@ -107,6 +107,37 @@ fn no_zero_is_missed() {
     check_against_march(SHELL, 1.0, Some(1.0), n_rays / 10, 100_000);
 }
 
+/// At a pole there is no surface, though the sign changes there and slopes are on one side; a zero beside one is found.
+#[test]
+fn poles_are_no_surfaces() {
+    let hits = |text: &str| {
+        let (geometry, _) = single(implicit(text, 1.5, None), Transform::IDENTITY, false);
+        let ray = |y: f32| Ray::new(Point3::new(-2.9, y, 0.17), Vector3::new(1.0, 0.01, 0.02).normalized());
+        let hit = |y: f32| geometry.intersect(&ray(y), f32::INFINITY, &any).map(|hit| ray(y).at(hit.t));
+        (0..200).map(|i| hit(i as f32 / 100.0 - 1.003)).collect::<Vec<_>>()
+    };
+    for text in ["x^-1", "1/x", "1/(x*x*x - 0.1)", "x^-3"] {
+        assert!(hits(text).iter().all(Option::is_none), "{text}");
+    }
+    for text in ["tan(2*x+1.5707963)", "tan(x) - y", "x^-1 - y", "tan(7*x) + 1"] {
+        let f = formula(text);
+        let found: Vec<Point3> = hits(text).into_iter().flatten().collect();
+        assert!(found.len() > 50, "{text}: {}", found.len());
+        for p in found {
+            let (value, gradient) = f.gradient([p.x, p.y, p.z].map(f64::from));
+            let slope = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
+            assert!(
+                value.abs() <= 2e-6 * slope && value.abs() < 0.1,
+                "{text}: {value} at {p:?}, slope {slope}"
+            );
+        }
+    }
+    // The first zero from the left, beyond poles: -π/4 is the first of tan(2 x + π/2) in the box that is no pole.
+    for p in hits("tan(2*x+1.5707963)") {
+        assert!((p.expect("a zero").x + std::f32::consts::FRAC_PI_4).abs() < 1e-5, "{p:?}");
+    }
+}
+
 /// The same torus as a quartic and as a formula: the same hits, normals and misses.
 #[test]
 fn quadrics_agree_with_their_formulas() {
