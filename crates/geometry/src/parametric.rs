@@ -1,8 +1,8 @@
 //! Surfaces given by three formulas of u and v (SPEC GEO-7), as triangles that deviate by no more than a stated distance.
 //!
 //! The rectangle of (u, v) is divided into cells, each of which is divided in four while its two triangles lie further from the
-//! surface than the tolerance, measured along the normal in the middle of the cell, of its edges and of its quarters; where the
-//! surface varies quadratically, those are the places of the largest distance. A cell beside smaller ones takes in their
+//! surface than the tolerance, measured along the normal at a grid of places within the cell: at few, among which are those of the
+//! largest distance where the surface varies quadratically, and at many before it is taken. A cell beside smaller ones takes in their
 //! corners on its edges, so that no cracks open. Where the formula closes on itself (a seam) or shrinks to a point (a pole), the
 //! vertices are the same to the last bit. Normals are du × dv, exact.
 
@@ -25,8 +25,16 @@ const FIRST_LEVEL: u32 = 3;
 const LAST_LEVEL: u32 = 12;
 /// Share of the tolerance that may be seen: the rest is for what lies between the places looked at.
 const CAUTION: f64 = 0.75;
+/// Places along each side of a cell where a coarse one is found out.
+const FEW_PLACES: u32 = 2;
+/// Places along each side where one is looked at before it is taken.
+const MANY_PLACES: u32 = 8;
+/// Steps of formulas for each vertex times triangles at most, some minutes of one processor.
+const MAX_WORK: usize = 1 << 28;
 /// Grid points along each side.
 const N: u32 = 1 << LAST_LEVEL;
+/// The same as a number: where u and v end, in units of the grid.
+const END: f64 = N as f64;
 
 /// A surface (x, y, z) of (u, v), in metres.
 #[derive(Clone, Debug)]
@@ -39,8 +47,16 @@ pub struct ParametricSurface {
     pub v: [f64; 2],
     /// Largest distance of a triangle from the surface, in metres; `None` for 1/2000 of the diagonal of the box around it.
     pub tolerance: Option<f64>,
-    /// Most triangles, even if the tolerance is not met.
+    /// Most triangles, even if the tolerance is not met; fewer if the formulas have many steps.
     pub max_triangles: usize,
+}
+
+impl ParametricSurface {
+    /// Most triangles, such that the work is bounded too.
+    fn most_triangles(&self) -> usize {
+        let n_steps: usize = self.position.iter().map(Expression::n_steps).sum();
+        self.max_triangles.min(MAX_WORK / n_steps.max(1))
+    }
 }
 
 /// The triangles of a surface.
@@ -83,7 +99,7 @@ impl Cell {
 pub fn tessellate(surface: &ParametricSurface) -> Tessellation {
     let grid = Grid::new(surface);
     let tolerance = surface.tolerance.unwrap_or(grid.size / 2000.0);
-    let (cells, error) = grid.divide(CAUTION * tolerance, surface.max_triangles);
+    let (cells, error) = grid.divide(CAUTION * tolerance, surface.most_triangles());
     let mut mesh = grid.triangles(&cells);
     mend(&mut mesh);
     Tessellation { mesh, tolerance, error }
@@ -104,7 +120,7 @@ impl<'a> Grid<'a> {
     fn new(surface: &'a ParametricSurface) -> Self {
         const STEPS: u32 = 32;
         let mut grid = Self { surface, size: 0.0, closes: [false; 2], poles: [[false; 2]; 2] };
-        let at = |i: u32, j: u32| grid.raw_position([i * (N / STEPS), j * (N / STEPS)]);
+        let at = |i: u32, j: u32| grid.raw_position([i, j].map(|k| f64::from(k * (N / STEPS))));
         let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for p in (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| (i, j))).map(|(i, j)| at(i, j)) {
             if p.is_finite() {
@@ -125,36 +141,41 @@ impl<'a> Grid<'a> {
         grid
     }
 
-    fn parameters(&self, [i, j]: [u32; 2]) -> [f64; 2] {
-        let mix =
-            |[a, b]: [f64; 2], k: u32| if k == N { b } else { a + (b - a) * f64::from(k) / f64::from(N) };
+    /// (u, v) at a place in units of the grid.
+    fn parameters(&self, [i, j]: [f64; 2]) -> [f64; 2] {
+        let mix = |[a, b]: [f64; 2], k: f64| if k == END { b } else { a + (b - a) * k / END };
         [mix(self.surface.u, i), mix(self.surface.v, j)]
     }
 
-    fn raw_position(&self, point: [u32; 2]) -> DVec3 {
+    fn raw_position(&self, point: [f64; 2]) -> DVec3 {
         let [u, v] = self.parameters(point);
         DVec3::from_array(std::array::from_fn(|axis| self.surface.position[axis].value([u, v, 0.0])))
     }
 
     /// The grid point that stands for all at the same place.
-    fn representative(&self, [mut i, mut j]: [u32; 2]) -> [u32; 2] {
-        if self.closes[0] && i == N {
-            i = 0;
+    fn representative(&self, [mut i, mut j]: [f64; 2]) -> [f64; 2] {
+        if self.closes[0] && i == END {
+            i = 0.0;
         }
-        if self.closes[1] && j == N {
-            j = 0;
+        if self.closes[1] && j == END {
+            j = 0.0;
         }
-        if i == 0 && self.poles[0][0] || i == N && self.poles[0][1] {
-            j = 0;
+        if i == 0.0 && self.poles[0][0] || i == END && self.poles[0][1] {
+            j = 0.0;
         }
-        if j == 0 && self.poles[1][0] || j == N && self.poles[1][1] {
-            i = 0;
+        if j == 0.0 && self.poles[1][0] || j == END && self.poles[1][1] {
+            i = 0.0;
         }
         [i, j]
     }
 
+    /// The surface at a place in units of the grid.
+    fn position_at(&self, place: [f64; 2]) -> DVec3 {
+        self.raw_position(self.representative(place))
+    }
+
     fn position(&self, point: [u32; 2]) -> DVec3 {
-        self.raw_position(self.representative(point))
+        self.position_at(point.map(f64::from))
     }
 
     /// du × dv, of length 1, if there is such a direction.
@@ -167,11 +188,11 @@ impl<'a> Grid<'a> {
         is_direction.then(|| cross.normalize()).filter(|n| n.is_finite())
     }
 
-    /// The same at a grid point; at a pole, that of a point beside it.
-    fn normal(&self, point: [u32; 2]) -> Option<DVec3> {
-        let [u, v] = self.parameters(point);
+    /// The same at a place in units of the grid; at a pole, that of a point beside it.
+    fn normal(&self, place: [f64; 2]) -> Option<DVec3> {
+        let [u, v] = self.parameters(place);
         let beside = |share: f64| {
-            let middle = self.parameters([N / 2, N / 2]);
+            let middle = self.parameters([END / 2.0; 2]);
             self.normal_at([u + share * (middle[0] - u), v + share * (middle[1] - v)])
         };
         self.normal_at([u, v]).or_else(|| beside(1e-5)).or_else(|| beside(1e-2))
@@ -185,7 +206,7 @@ impl<'a> Grid<'a> {
             (0..1 << (2 * FIRST_LEVEL)).map(|k| Cell { corner: corner(k), level: FIRST_LEVEL }).collect();
         let (mut done, mut largest) = (Vec::new(), 0.0_f64);
         while !active.is_empty() {
-            let errors: Vec<f64> = active.par_iter().map(|cell| self.error(*cell)).collect();
+            let errors: Vec<f64> = active.par_iter().map(|cell| self.error(*cell, tolerance)).collect();
             let mut coarse: Vec<(f64, Cell)> = Vec::new();
             let n_cells = done.len() + active.len();
             for (cell, error) in active.into_iter().zip(errors) {
@@ -210,27 +231,39 @@ impl<'a> Grid<'a> {
         (done, largest)
     }
 
-    /// Largest distance of the two triangles of a cell from the surface, where it is looked at; 0 where it is not defined.
-    fn error(&self, cell: Cell) -> f64 {
+    /// Largest distance of the two triangles of a cell from the surface, looked at in many places if few tell of none beyond
+    /// the tolerance.
+    fn error(&self, cell: Cell, tolerance: f64) -> f64 {
+        let few = self.error_among(cell, FEW_PLACES);
+        if few > tolerance { few } else { few.max(self.error_among(cell, MANY_PLACES)) }
+    }
+
+    /// The largest distance at the places that divide the sides in `n`; 0 where the surface is not defined.
+    fn error_among(&self, cell: Cell, n: u32) -> f64 {
         let [p00, p10, p11, p01] = cell.corners().map(|point| self.position(point));
-        let ([i, j], step) = (cell.corner, cell.side() / 4);
-        if step == 0 {
-            return 0.0;
-        }
+        let [i, j] = cell.corner.map(f64::from);
+        let side = f64::from(cell.side());
         let mut largest = 0.0_f64;
-        for (a, b) in [(2, 2), (2, 0), (4, 2), (2, 4), (0, 2), (1, 1), (3, 1), (1, 3), (3, 3)] {
-            let (x, y) = (f64::from(a) / 4.0, f64::from(b) / 4.0);
+        for (a, b) in (0..=n).flat_map(|a| (0..=n).map(move |b| (a, b))) {
+            // Corners lie on the surface, and of many some were among few.
+            let is_corner = a % n == 0 && b % n == 0;
+            let again = n / FEW_PLACES;
+            let was_seen = again > 1 && a % again == 0 && b % again == 0;
+            if is_corner || was_seen {
+                continue;
+            }
+            let (x, y) = (f64::from(a) / f64::from(n), f64::from(b) / f64::from(n));
             // The triangles lie on both sides of the diagonal from the first corner.
             let flat = if x >= y {
                 p00 + (p10 - p00) * x + (p11 - p10) * y
             } else {
                 p00 + (p11 - p01) * x + (p01 - p00) * y
             };
-            let point = [i + a * step, j + b * step];
-            let offset = self.position(point) - flat;
-            let is_border = point.iter().any(|k| *k == 0 || *k == N);
+            let place = [i + x * side, j + y * side];
+            let offset = self.position_at(place) - flat;
+            let is_border = place.iter().any(|k| *k == 0.0 || *k == END);
             // Sideways the surface may slip in its own plane, but not at its border.
-            let distance = match self.normal(point) {
+            let distance = match self.normal(place) {
                 Some(n) if !is_border => offset.dot(n).abs(),
                 _ => offset.length(),
             };
@@ -291,7 +324,7 @@ impl<'a> Grid<'a> {
         let p = self.position(point);
         let p = double::to_point(if p.is_finite() { p } else { DVec3::NAN });
         mesh.positions.push(p);
-        let n = self.normal(point).unwrap_or(DVec3::ZERO);
+        let n = self.normal(point.map(f64::from)).unwrap_or(DVec3::ZERO);
         mesh.normals.push(double::to_normal(n));
         let [i, j] = point.map(|k| k as f32 / N as f32);
         mesh.uvs.push(Point2::new(i, j));

@@ -38,7 +38,8 @@ fn the_tolerance_is_met() {
             for _ in 0..4 {
                 let (s, t) = (rng.next_f32().sqrt(), rng.next_f32());
                 let p = a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t);
-                assert!(distance(p).abs() <= tolerance, "{} exceeds {tolerance}", distance(p));
+                let d = distance(p);
+                assert!(d.abs() <= tolerance, "{d} exceeds {tolerance} at {p:?}");
             }
         }
         assert!(mesh.indices.len() <= most, "{} triangles", mesh.indices.len());
@@ -53,11 +54,43 @@ fn the_tolerance_is_met() {
     check(&sphere(1e-3), &|p| norm(p) - 1.0, 4 * 10_000);
     // Half of it bends much, half of it hardly: cells of several sizes.
     let wave = surface(["u", "v", "exp(-20*(u^2+v^2))"], [-2.0, 2.0], [-2.0, 2.0], 1e-3);
-    let to_wave = |p: Point3| {
-        let (x, y, z) = (f64::from(p.x), f64::from(p.y), f64::from(p.z));
-        z - (-20.0 * (x * x + y * y)).exp()
-    };
-    check(&wave, &to_wave, 12_000);
+    check(&wave, &|p| to_graph(&wave, p), 12_000);
+    // Flat at the ends of the quarters of the first cells.
+    let ripples = surface(["u", "v", "0.01*sin(32*pi*u)"], [0.0, 1.0], [0.0, 1.0], 1e-3);
+    check(&ripples, &|p| to_graph(&ripples, p), 100_000);
+}
+
+/// Distance of a point from z = f(x, y): from the foot of its perpendicular, found by steps in tangential planes.
+fn to_graph(surface: &ParametricSurface, p: Point3) -> f64 {
+    let p = double::point(p);
+    let (mut foot, mut least) = (p, f64::INFINITY);
+    for _ in 0..8 {
+        let (z, slope) = surface.position[2].gradient([foot.x, foot.y, 0.0]);
+        foot.z = z;
+        let offset = p - foot;
+        least = least.min(offset.length());
+        let n = DVec3::new(-slope[0], -slope[1], 1.0).normalize();
+        foot += offset - n * offset.dot(n);
+    }
+    least
+}
+
+/// Where the finest cells are too coarse, that is told: the distance from a step is half of it.
+#[test]
+fn errors_of_the_finest_cells_are_told() {
+    let step = surface(["u", "v", "if(u < 0.33717, 0, 1)"], [0.0, 1.0], [0.0, 0.001], 1e-3);
+    let Tessellation { error, .. } = tessellate(&step);
+    assert!(error > 0.1, "{error}");
+}
+
+/// Long formulas make fewer triangles.
+#[test]
+fn work_is_bounded() {
+    let terms: Vec<String> = (0..2000).map(|i| format!("sin({i}.5*u)")).collect();
+    let long = surface(["u", "v", &terms.join("+")], [0.0, 1.0], [0.0, 1.0], 1e-9);
+    let most = ParametricSurface { max_triangles: usize::MAX, ..long.clone() }.most_triangles();
+    assert!(most <= MAX_WORK / 6000 && most > 128, "{most}");
+    assert_eq!(ParametricSurface { max_triangles: 200, ..long }.most_triangles(), 200);
 }
 
 /// Every edge of a closed surface has one neighbour by position, whatever the sizes of cells: no cracks, seams or holes at poles.
