@@ -22,8 +22,8 @@ use crate::refine::gaussian;
 
 /// More levels of [`HeightGrid::fractal`] are refused: 11 make 8.4 million triangles.
 pub const MAX_HEIGHT_LEVELS: u32 = 11;
-/// A side of a grid has at most so many heights.
-pub const MAX_GRID_SIDE: u32 = 8192;
+/// A grid has at most so many heights, which make twice as many triangles.
+pub const MAX_HEIGHTS: u64 = 1 << 23;
 
 /// Heights on a grid, rows in order of y, each in order of x.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,13 +46,17 @@ pub struct FractalHeights {
 }
 
 impl HeightGrid {
-    /// A grid of n[0] by n[1] heights; `None` unless there are at least 2 and at most [`MAX_GRID_SIDE`] along each side, as many as
-    /// that in all, and finite.
+    /// A grid of n[0] by n[1] heights; `None` unless [`Self::is_size`], there are as many as that, and finite.
     #[must_use]
     pub fn new(n: [u32; 2], heights: Vec<f32>) -> Option<Self> {
-        let is_size = n.iter().all(|n| (2..=MAX_GRID_SIDE).contains(n));
-        let is_full = is_size && heights.len() == n[0] as usize * n[1] as usize;
+        let is_full = Self::is_size(n) && heights.len() == n[0] as usize * n[1] as usize;
         (is_full && heights.iter().all(|z| z.is_finite())).then_some(Self { n, heights })
+    }
+
+    /// True if a grid may have these sides: at least 2 heights along each, and at most [`MAX_HEIGHTS`] in all.
+    #[must_use]
+    pub fn is_size(n: [u32; 2]) -> bool {
+        n.iter().all(|n| *n >= 2) && u64::from(n[0]) * u64::from(n[1]) <= MAX_HEIGHTS
     }
 
     /// Fractal noise; the corners have height 0. More levels than possible are taken for [`MAX_HEIGHT_LEVELS`].

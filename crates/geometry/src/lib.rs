@@ -39,7 +39,7 @@ pub use accelerator::{Accelerator, BinarySplit, DivisionSettings, GridSettings, 
 pub use bounding_sphere::{BoundingSphere, ObjectReference};
 pub use builder::GeometryBuilder;
 pub use geometry::{Geometry, GeometryCounts};
-pub use heightfield::{FractalHeights, HeightGrid, MAX_GRID_SIDE, MAX_HEIGHT_LEVELS};
+pub use heightfield::{FractalHeights, HeightGrid, MAX_HEIGHT_LEVELS, MAX_HEIGHTS};
 pub use hit::{
     GeometryId, Hit, NO_INSTANCE, ObjectId, Reference, ShapeSample, SurfaceDerivatives, SurfacePoint,
 };

@@ -45,15 +45,20 @@ impl Revolution {
     pub fn mesh(&self, contour: &[Point2]) -> Result<TriangleMesh, ContourError> {
         let pieces = smooth_pieces(contour, self.crease_rad.into())?;
         let tolerance = self.tolerance_for(contour);
-        let rows: Vec<Vec<CurvePoint>> =
-            pieces.iter().map(|piece| piece.flattened(0.5 * tolerance)).collect();
         let radius = contour.iter().fold(0.0, |r: f64, p| r.max(p.y.into()));
         let phi_max = super::shape::clamp_azimuth(self.phi_max_rad.into());
         let n_sectors = sectors(radius, 0.5 * tolerance, phi_max);
-        let n_rows: usize = rows.iter().map(Vec::len).sum();
-        let n_triangles = 2.0 * n_sectors * n_rows as f64;
-        if n_triangles > MAX_TRIANGLES {
-            return Err(ContourError::TooFine { n_triangles });
+        let triangles = |n_rows: usize| 2.0 * n_sectors * n_rows as f64;
+        let mut n_rows = 0;
+        let mut rows: Vec<Vec<CurvePoint>> = Vec::new();
+        for piece in &pieces {
+            let most = (MAX_TRIANGLES / triangles(1)) as usize;
+            let row = piece.flattened(0.5 * tolerance, most - n_rows.min(most));
+            n_rows += row.len();
+            rows.push(row);
+            if triangles(n_rows) > MAX_TRIANGLES {
+                return Err(ContourError::TooFine { n_triangles: triangles(n_rows) });
+            }
         }
         let length = rows.last().and_then(|row| row.last()).map_or(1.0, |point| point.s);
         let mut lathe = Lathe::new(n_sectors as u32, phi_max, length);

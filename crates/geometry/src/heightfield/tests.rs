@@ -114,6 +114,8 @@ fn impossible_grids_are_refused() {
     assert!(HeightGrid::new([2, 2], vec![0.0; 3]).is_none());
     assert!(HeightGrid::new([1, 4], vec![0.0; 4]).is_none());
     assert!(HeightGrid::new([u32::MAX, u32::MAX], Vec::new()).is_none());
+    assert!(HeightGrid::is_size([4096, 2048]) && HeightGrid::is_size([2, 1 << 22]));
+    assert!(!HeightGrid::is_size([4096, 2049]) && !HeightGrid::is_size([8192, 8192]));
     assert!(HeightGrid::new([2, 2], vec![0.0, 0.0, f32::NAN, 0.0]).is_none());
     let deep = FractalHeights { levels: 4_000_000_000, hurst: 0.5, amplitude: 1.0, seed: 0 };
     assert_eq!(HeightGrid::fractal(&FractalHeights { levels: 3, ..deep }).heights().len(), 81);

@@ -215,16 +215,20 @@ fn end_tangent(side: (f64, DVec2), previous: Option<(f64, DVec2)>, piece: &Piece
 }
 
 impl Piece {
-    /// Points of the curve with chords no farther from it than `tolerance`, in order.
-    pub(super) fn flattened(&self, tolerance: f64) -> Vec<CurvePoint> {
+    /// Points of the curve with chords no farther from it than `tolerance`, in order; only its beginning if those are more
+    /// than `most`, but more than that then.
+    pub(super) fn flattened(&self, tolerance: f64, most: usize) -> Vec<CurvePoint> {
         let point = |knot: &Knot| CurvePoint { p: knot.p, tangent: knot.tangent, s: knot.s };
         let mut points: Vec<CurvePoint> = self.knots.first().map(point).into_iter().collect();
         for pair in self.knots.windows(2) {
+            if points.len() > most {
+                break;
+            }
             let third = (pair[1].s - pair[0].s) / 3.0;
             let [a, d] = [pair[0].p, pair[1].p];
             let controls = [a, a + pair[0].tangent * third, d - pair[1].tangent * third, d];
             // Without this, rounding may leave a point of the axis beside it.
-            flatten(controls, [pair[0].s, pair[1].s], tolerance, 12, &mut points);
+            flatten(controls, [pair[0].s, pair[1].s], tolerance, (12, most), &mut points);
             if let Some(end) = points.last_mut() {
                 *end = point(&pair[1]);
             }
@@ -234,7 +238,17 @@ impl Piece {
 }
 
 /// Appends the end of a Bézier curve, after those of its halves where it is not flat.
-fn flatten(controls: [DVec2; 4], [s0, s1]: [f64; 2], tolerance: f64, depth: u32, out: &mut Vec<CurvePoint>) {
+/// Ends early once there are more than `most`.
+fn flatten(
+    controls: [DVec2; 4],
+    [s0, s1]: [f64; 2],
+    tolerance: f64,
+    (depth, most): (u32, usize),
+    out: &mut Vec<CurvePoint>,
+) {
+    if out.len() > most {
+        return;
+    }
     let [a, b, c, d] = controls;
     let chord = d - a;
     let length = chord.length();
@@ -250,8 +264,8 @@ fn flatten(controls: [DVec2; 4], [s0, s1]: [f64; 2], tolerance: f64, depth: u32,
     let (abc, bcd) = (middle(ab, bc), middle(bc, cd));
     let m = middle(abc, bcd);
     let s = 0.5 * (s0 + s1);
-    flatten([a, ab, abc, m], [s0, s], tolerance, depth - 1, out);
-    flatten([m, bcd, cd, d], [s, s1], tolerance, depth - 1, out);
+    flatten([a, ab, abc, m], [s0, s], tolerance, (depth - 1, most), out);
+    flatten([m, bcd, cd, d], [s, s1], tolerance, (depth - 1, most), out);
 }
 
 fn check(contour: &[Point2]) -> Result<(), ContourError> {

@@ -33,7 +33,10 @@ fn disks(contour: &[Point2], options: &Revolution) -> f64 {
         let (a, b) = (pair[0].p, pair[1].p);
         PI * (b.x - a.x) * (a.y * a.y + a.y * b.y + b.y * b.y) / 3.0
     };
-    pieces.iter().flat_map(|piece| piece.flattened(1e-7).windows(2).map(frustum).collect::<Vec<_>>()).sum()
+    pieces
+        .iter()
+        .flat_map(|piece| piece.flattened(1e-7, usize::MAX).windows(2).map(frustum).collect::<Vec<_>>())
+        .sum()
 }
 
 /// The volume of the mesh is that of the disks, less what regular polygons of so many sides lack of circles; a sphere's is
@@ -116,7 +119,7 @@ fn curves_are_smooth_and_stay_between_their_points() {
     let steps = contour(&[[0.0, 1.0], [1.0, 1.0], [1.3, 2.0], [2.0, 2.05], [3.0, 2.05]]);
     let pieces = smooth_pieces(&steps, 1.5).expect("a valid contour");
     assert_eq!(pieces.len(), 1);
-    let curve = pieces[0].flattened(1e-5);
+    let curve = pieces[0].flattened(1e-5, usize::MAX);
     for pair in curve.windows(2) {
         assert!(pair[1].p.x >= pair[0].p.x && pair[1].p.y >= pair[0].p.y, "{pair:?}");
         let turn = pair[0].tangent.angle_to(pair[1].tangent).abs();
@@ -145,6 +148,13 @@ fn impossible_contours_are_named() {
     let fine = Revolution { tolerance: 1e-14, ..Revolution::default() };
     let cylinder = contour(&[[0.0, 1.0], [1.0, 1.0]]);
     assert!(matches!(fine.mesh(&cylinder), Err(ContourError::TooFine { .. })));
+    // The curve ends with the limit: all of it would have 2^12 points for each of the contour's.
+    let pieces = smooth_pieces(&half_circle(1000), 1.0).expect("a circle");
+    assert!(pieces[0].flattened(1e-30, 5000).len() <= 5002);
+    let Err(ContourError::TooFine { n_triangles }) = fine.mesh(&half_circle(1000)) else {
+        panic!("it is too fine");
+    };
+    assert!(n_triangles > MAX_TRIANGLES);
 }
 
 /// The axis may be met on the way, and a side may run along it: both bodies are there, and nothing between.

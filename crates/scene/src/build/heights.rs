@@ -1,7 +1,7 @@
 //! Height fields, fractals and displacement: meshes that are made finer than what the file says.
 
 use etendue_geometry::{
-    BilinearMesh, Fractal, FractalHeights, HeightGrid, MAX_GRID_SIDE, MAX_HEIGHT_LEVELS, Refined, Shape,
+    BilinearMesh, Fractal, FractalHeights, HeightGrid, MAX_HEIGHT_LEVELS, MAX_HEIGHTS, Refined, Shape,
     TriangleMesh,
 };
 use etendue_image::{Encoding, Texels};
@@ -84,7 +84,7 @@ pub(super) fn read_height_field(p: &mut Parameters<'_, '_>) -> Option<Shape> {
         let name = ["z", "filename", "amplitude"].into_iter().find(|name| p.has(name)).unwrap_or("amplitude");
         let span = p.span_of(name);
         let message = format!(
-            "{} by {} heights make no field: 2 to {MAX_GRID_SIDE} along each side are needed, and finite ones",
+            "{} by {} heights make no field: at least 2 along each side are needed, at most {MAX_HEIGHTS} in all, and finite ones",
             n[0], n[1]
         );
         p.diagnostics().error(span, message);
@@ -141,7 +141,7 @@ fn read_picture(p: &mut Parameters<'_, '_>, encoding: &str) -> Option<([u32; 2],
         return None;
     };
     let (width, height) = (texels.width() as u32, texels.height() as u32);
-    if width > MAX_GRID_SIDE || height > MAX_GRID_SIDE {
+    if !HeightGrid::is_size([width, height]) {
         return Some(([width, height], Vec::new()));
     }
     let gray: Texels = texels.to_gray(encoding).to_linear(encoding);
