@@ -196,7 +196,7 @@ fn lens(settings: &Settings) -> Files {
 # Lengths are in metres; z points up.
 #   cube    side 1, its top at z = 1
 #   lens    two caps of spheres of radius 0.5 and index 1.5, of diameter 0.6; its middle at z = 1.45. Its focal length is
-#           0.51, so that it throws an image of the lamp to 0.69 below itself: the caustic is a disk with a sharp edge
+#           0.536, so that it throws an image of the lamp to 0.77 below its middle: the caustic is a disk with a sharp edge
 #   lamp    a ball of radius {radius} at z = 3.4, 4000 lumen
 
 LookAt 1.1 -2.1 2.3   0 0 1.02   0 0 1

@@ -62,13 +62,7 @@ fn read_formula(p: &mut Parameters<'_, '_>, name: &'static str, variables: &[&st
         p.missing(name, message);
         return None;
     };
-    let mut names = Vec::new();
-    let result = Expression::parse(&text, variables, &mut |word| {
-        if names.iter().all(|known| known != word) {
-            names.push(word.to_owned());
-        }
-        p.named_number(word).map(f64::from)
-    });
+    let result = Expression::parse(&text, variables, &mut |word| p.named_number(word).map(f64::from));
     let error = match result {
         Ok(expression) => return Some(expression),
         Err(error) => error,

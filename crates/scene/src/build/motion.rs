@@ -44,6 +44,13 @@ pub(super) fn moved(
         p.ignore(name);
         return shapes;
     }
+    let has_quads = shapes.iter().any(|shape| !matches!(shape, Shape::Triangles(_)));
+    if has_quads && meshes.attributes.iter().any(|attributes| !attributes.is_empty()) {
+        let message = "a moving mesh of quadrilaterals is made of triangles and loses what textures read of its vertices and faces";
+        let span = p.span_of(name);
+        p.diagnostics().warning(span, message).with_help("make it of triangles");
+        meshes.attributes.clear();
+    }
     let Some(mesh) = triangulated(shapes) else { return Vec::new() };
     let end = if name == "P1" {
         let positions = p.points3("P1").unwrap_or_default().to_vec();

@@ -1,6 +1,7 @@
 //! Meshes that deform while the shutter is open.
 
 use super::*;
+use crate::assets::{AttributeDomain, LoadedMesh, MeshAttribute};
 
 fn lifted() -> Entity {
     here(
@@ -38,4 +39,38 @@ fn impossible_motions_are_reported() {
     document.area_lights.push(Entity::new("diffuse"));
     document.shapes[0].area_light = Some(0);
     warning_here(&document, "meshes that deform");
+}
+
+/// A moving mesh with quadrilaterals is made of triangles: what the file says of its faces would be read on wrong ones.
+#[test]
+fn moving_quadrilaterals_lose_their_attributes() {
+    let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (2.0, 0.0)];
+    let attribute = MeshAttribute {
+        name: "face_weight".to_owned(),
+        domain: AttributeDomain::Face,
+        n_components: 1,
+        values: vec![0.25, 0.75],
+    };
+    let mesh = LoadedMesh {
+        triangles: vec![[1, 4, 2]],
+        quads: vec![[0, 1, 3, 2]],
+        positions: corners.map(|(x, y)| Point3::new(x, y, 0.0)).to_vec(),
+        attributes: vec![attribute],
+        ..LoadedMesh::default()
+    };
+    let warnings = |mesh: &LoadedMesh, entity: Entity| {
+        let weight = Entity::new("meshattribute").with("name", strings(&["face_weight"]));
+        let textures = vec![float_texture("weight", weight)];
+        let leaf = here(entity).with("alpha", texture("weight"));
+        let document = Document { textures, ..lit_with(vec![shape(leaf)]) };
+        let meshes = ["a.ply", "b.ply"].map(|name| (name.to_owned(), mesh.clone().into()));
+        let (scene, problems) = build_with(&document, Assets { meshes: meshes.into(), ..Assets::default() });
+        assert!(scene.is_some(), "{problems:?}");
+        problems.iter().filter(|problem| problem.message.contains("moving mesh of quadrilaterals")).count()
+    };
+    let still = Entity::new("plymesh").with("filename", strings(&["a.ply"]));
+    let moving = still.clone().with("filename1", strings(&["b.ply"]));
+    assert_eq!((warnings(&mesh, still), warnings(&mesh, moving.clone())), (0, 1));
+    let triangles = LoadedMesh { quads: Vec::new(), ..mesh };
+    assert_eq!(warnings(&triangles, moving), 0);
 }

@@ -78,7 +78,8 @@ fn tables_list_what_is_asked_for() {
                 (_, "point3") => points(&[[0.5, 0.0, 0.0]]),
                 (_, "vector3") => Value::Vectors3(vec![Vector3::new(1.0, 0.0, 0.0)]),
                 ("zmax" | "thetamax", _) => floats(&[0.75]),
-                ("function", _) => strings(&["x + y^2 - radius / 4"]),
+                // Zero in the plane x = 1/4, which meets the ball of this radius, and with a slope within "lipschitz".
+                ("function", _) => strings(&["(x - radius / 2) / 4"]),
                 ("x", "string") => strings(&["u*tolerance"]),
                 ("urange" | "vrange", _) => floats(&[0.0, 1.0]),
                 ("maxtriangles", _) => integers(&[1000]),
