@@ -6,7 +6,7 @@
 //! that every structure has two levels, moves and filters as the hierarchy does. They are written to be read and to be compared
 //! with each other, with one primitive tested at a time; only `bvh` is made for speed.
 //!
-//! All find the hits of [`brute`], bit for bit. The arithmetic of a primitive's test does not depend on the structure; ties are
+//! All find the hits of [`brute`], bit for bit; only `bvh` may rarely take another of several at the very same distance. The arithmetic of a primitive's test does not depend on the structure; ties are
 //! decided by the order of primitives, not of visits; and whatever divides space by planes takes them where a ray is a little
 //! ahead of itself and a little behind, as `bvh/ray.rs` does for boxes, so that no part of the ray falls between two cells.
 //! Structures that divide space hold a primitive in every cell that its box overlaps. That it may be tested more than once

@@ -80,7 +80,7 @@ impl Geometry {
     }
 
     /// The nearest accepted hit with t in (0, `t_max`), of equally near ones the first in order of instance, shape and
-    /// primitive. `filter` sees each candidate and may refuse it.
+    /// primitive (but where the rounding of a box hides it, another). `filter` sees each candidate and may refuse it.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32, filter: &impl Fn(&Hit) -> bool) -> Option<Hit> {
         self.search::<_, _, false>(ray, t_max, filter, Unnoted)
