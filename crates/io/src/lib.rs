@@ -27,6 +27,8 @@ pub mod tensor;
 mod exact;
 mod file;
 mod json;
+#[cfg(test)]
+mod test_support;
 
 pub use assets::load_assets;
 pub use brdf_table::read_brdf_table;

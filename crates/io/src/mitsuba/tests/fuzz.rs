@@ -4,22 +4,7 @@ use std::path::Path;
 
 use super::super::read_mitsuba_bytes;
 use crate::pbrt::{read_pbrt_str, write_pbrt};
-
-/// The generator SplitMix64 (Steele, Lea and Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n.max(1) as u64) as usize
-    }
-}
+use crate::test_support::Random;
 
 const SCENE: &str = r##"<scene version="3.0.0"><default name="n" value="4"/><integrator type="path">
 <integer name="max_depth" value="$n"/></integrator><sensor type="thinlens"><float name="fov" value="45"/>

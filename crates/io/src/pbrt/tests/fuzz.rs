@@ -5,22 +5,7 @@ use std::path::Path;
 use super::super::{read_pbrt_bytes, read_pbrt_str, write_pbrt};
 use super::listed;
 use super::round_trip::shared_scenes;
-
-/// The generator SplitMix64 (Steele, Lea and Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n.max(1) as u64) as usize
-    }
-}
+use crate::test_support::Random;
 
 const SCENE: &str = r#"Option "seed" 3 ColorSpace "srgb" LookAt 1 2 3 0 0 0 0 1 0 Camera "perspective" "float fov" [ 40 ]
 Film "rgb" "string filename" "a.exr" # comment
