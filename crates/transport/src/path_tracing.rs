@@ -7,7 +7,7 @@
 //!
 //! SPEC: PT-1 to PT-5, EQ-1, EQ-7, MC-11, MC-12, MC-15.
 
-pub(crate) mod artist;
+mod artist;
 mod reuse;
 mod settings;
 mod walk;

@@ -12,7 +12,6 @@ use etendue_spectrum::{Sampled, Wavelengths};
 
 use super::camera_pass::Tracer;
 use super::mis::power_heuristic;
-use crate::path_tracing::artist::is_kept_from;
 
 /// A light as a surface sees it, before the surface scatters it.
 #[derive(Clone, Copy, Debug)]
@@ -96,7 +95,8 @@ fn sample_light(
 ) -> Option<DirectLight> {
     let reference = surface.reference();
     let (light, pmf) = scene.light_sampler.sample(group, &reference, u_light)?;
-    if is_kept_from(scene, light, surface.hit.geometry) {
+    // Light linking keeps some lights from some shapes.
+    if scene.controls.as_ref().is_some_and(|controls| !controls.reaches(light, surface.hit.geometry)) {
         return None;
     }
     let sample = scene.light(light).sample_li(&scene.light_context(), &reference, u, lambda)?;

@@ -7,7 +7,6 @@
 //! lobe with its own colour.
 
 use etendue_geometry::GeometryId;
-use etendue_scene::Scene;
 use etendue_scene::bsdf::{Bsdf, Lobes};
 use etendue_scene::controls::Controls;
 use etendue_scene::light::LightId;
@@ -81,10 +80,4 @@ impl Artist {
     fn admits_caustic(&self, controls: &Controls, id: GeometryId) -> bool {
         !self.is_diffuse || !self.no_caustic && controls.shape(id).casts_caustics
     }
-}
-
-/// True if light linking keeps the light from the shape.
-#[inline]
-pub(crate) fn is_kept_from(scene: &Scene, light: LightId, shape: GeometryId) -> bool {
-    scene.controls.as_ref().is_some_and(|controls| !controls.reaches(light, shape))
 }
