@@ -96,3 +96,11 @@ pub struct RayCounts {
     /// Pixels of passes that were interpolated and cost none.
     pub interpolated: u64,
 }
+
+impl std::ops::AddAssign for RayCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.closest += other.closest;
+        self.shadow += other.shadow;
+        self.interpolated += other.interpolated;
+    }
+}

@@ -8,6 +8,7 @@ pub mod lpe;
 pub mod method;
 pub mod path;
 pub mod path_tracing;
+pub mod photon;
 pub mod render;
 
 pub use integrator::{Control, Integrator, PassEnd, Passes, RayCounts};

@@ -11,6 +11,7 @@
 
 use std::fmt;
 
+use etendue_scene::bsdf::BsdfSample;
 use etendue_spectrum::Sampled;
 use regex_automata::dfa::{Automaton, StartKind, dense};
 use regex_automata::nfa::thompson;
@@ -44,6 +45,19 @@ pub enum Event {
 }
 
 impl Event {
+    /// The event of a sampled direction, where glossy lobes narrower than `sharp_alpha` are sharp.
+    #[inline]
+    #[must_use]
+    pub fn of(sample: &BsdfSample, sharp_alpha: f32) -> Self {
+        if sample.is_specular() {
+            Self::Specular
+        } else if sample.lobe.is_glossy() {
+            Self::glossy(sample.roughness, sharp_alpha)
+        } else {
+            Self::Diffuse
+        }
+    }
+
     /// The event of a glossy lobe of that microfacet width, where those narrower than `sharp_alpha` are sharp.
     #[must_use]
     pub fn glossy(alpha: f32, sharp_alpha: f32) -> Self {

@@ -30,7 +30,9 @@ pub enum WavelengthMode {
 }
 
 impl WavelengthMode {
-    fn sample(self, u: f32) -> Wavelengths {
+    /// Wavelengths for a random number in [0, 1).
+    #[must_use]
+    pub fn sample(self, u: f32) -> Wavelengths {
         match self {
             Self::Hero => Wavelengths::sample_visible(u),
             Self::Single => Wavelengths::sample_single(u),

@@ -413,14 +413,14 @@ impl<'s> Walk<'s> {
             self.obey(controls, surface, sample);
         }
         if !layers.is_idle() {
-            layers.scatter(event_of(sample, self.settings.sharp_alpha));
+            layers.scatter(Event::of(sample, self.settings.sharp_alpha));
         }
     }
 
     /// Ends the path where all that it may find is switched off: roulette does, for want of throughput.
     #[cold]
     fn obey(&mut self, controls: &Controls, surface: &Surface, sample: &BsdfSample) {
-        let event = event_of(sample, self.settings.sharp_alpha);
+        let event = Event::of(sample, self.settings.sharp_alpha);
         if !self.artist.scatter(controls, surface.hit.geometry, event) {
             self.beta = Sampled::ZERO;
         }
@@ -440,16 +440,5 @@ impl<'s> Walk<'s> {
         }
         self.beta /= probability;
         true
-    }
-}
-
-/// The letter of a scattering event.
-fn event_of(sample: &BsdfSample, sharp_alpha: f32) -> Event {
-    if sample.is_specular() {
-        Event::Specular
-    } else if sample.lobe.is_glossy() {
-        Event::glossy(sample.roughness, sharp_alpha)
-    } else {
-        Event::Diffuse
     }
 }

@@ -20,6 +20,7 @@ mod media;
 mod merging;
 mod motion;
 mod passes;
+mod photons;
 mod pictures;
 mod radiometry;
 mod reuse;

@@ -1,0 +1,14 @@
+//! Light from its source: photons, their emission, and their walk through the scene (Jensen 2001, "Realistic Image Synthesis
+//! Using Photon Mapping", chapters 4 and 5; SPEC PM-1, PM-2).
+//!
+//! A photon is a packet of flux. Those of a pass share the flux of all lights: a photon's [`flux`](walk::PhotonVertex::flux) is
+//! what it would carry alone, to be divided by how many were emitted. All methods that follow light, from light tracing to
+//! photon maps, share [`emit`] and [`walk`].
+
+pub mod emit;
+pub mod trail;
+pub mod walk;
+
+pub use emit::{EmittedPhoton, PhotonEmitter};
+pub use trail::Trail;
+pub use walk::{Onward, PhotonVertex, PhotonWalk, trace_photons};
