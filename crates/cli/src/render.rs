@@ -59,6 +59,7 @@ fn run_in_pool(arguments: &RenderArguments, started: Instant) -> Result<()> {
     let noted = arguments.stats.as_ref().map_or(Ok(()), |path| statistics.write(path));
     if !arguments.quiet {
         report_faults(&job.film);
+        job.integrator.report().iter().filter_map(|e| e.advice.as_deref()).for_each(report::warning);
     }
     written?;
     if !arguments.quiet {
@@ -212,6 +213,7 @@ fn statistics(
 ) -> Statistics {
     let rays = watch.rays();
     let relative_error = job.film.relative_error();
+    let report = job.integrator.report();
     Statistics {
         version: env!("CARGO_PKG_VERSION"),
         integrator: method_name(&job.scene.integrator.type_name),
@@ -227,12 +229,13 @@ fn statistics(
         interpolated_samples: rays.interpolated,
         rays: rays.closest,
         shadow_rays: rays.shadow,
-        photons_stored: 0,
+        photons_stored: report.iter().find(|e| e.name == "photons_stored").map_or(0, |e| e.value as u64),
         peak_memory_bytes: stats::peak_memory().unwrap_or(0),
         threads: rayon::current_num_threads(),
         nan_samples: job.film.sums().faults.invalid,
         saturated_samples: job.film.sums().faults.saturated,
         relative_error: relative_error.is_finite().then_some(relative_error),
+        report: report.into_iter().map(Into::into).collect(),
     }
 }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use cpu_time::{ProcessTime, ThreadTime};
+use etendue::transport::ReportEntry;
 use serde::Serialize;
 
 use crate::failure::{Failure, Result};
@@ -39,7 +40,7 @@ pub(crate) struct Statistics {
     pub(crate) rays: u64,
     /// Rays that asked for visibility.
     pub(crate) shadow_rays: u64,
-    /// Photons stored; none by this method.
+    /// Photons stored; 0 where the method stores none.
     pub(crate) photons_stored: u64,
     /// Largest resident memory of the process; 0 where the system does not tell.
     pub(crate) peak_memory_bytes: u64,
@@ -51,6 +52,26 @@ pub(crate) struct Statistics {
     pub(crate) saturated_samples: u64,
     /// Relative standard error of the image.
     pub(crate) relative_error: Option<f64>,
+    /// What the method tells of its work.
+    pub(crate) report: Vec<Figure>,
+}
+
+/// A figure that a method tells of its work.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Figure {
+    name: &'static str,
+    /// `null` where it is not finite.
+    value: f64,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    unit: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    advice: Option<String>,
+}
+
+impl From<ReportEntry> for Figure {
+    fn from(ReportEntry { name, value, unit, advice }: ReportEntry) -> Self {
+        Self { name, value, unit, advice }
+    }
 }
 
 impl Statistics {

@@ -44,6 +44,11 @@ pub trait Integrator: Send {
     /// Adds one sample per pixel, or what corresponds to it, to the film.
     fn run_pass(&mut self, scene: &Scene, pass: u64, film: &mut Film, control: &Control<'_>) -> PassEnd;
 
+    /// What the method tells of its work so far beyond rays, in a fixed order; names are stable.
+    fn report(&self) -> Vec<ReportEntry> {
+        Vec::new()
+    }
+
     /// State between passes, for checkpoints; empty for independent passes.
     fn save(&self) -> Vec<u8> {
         Vec::new()
@@ -55,6 +60,33 @@ pub trait Integrator: Send {
     /// If the state was not saved by the same method with the same settings.
     fn load(&mut self, state: &[u8]) -> Result<(), StateError> {
         if state.is_empty() { Ok(()) } else { Err(StateError) }
+    }
+}
+
+/// A figure that a method tells of its work, such as how many photons it stored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReportEntry {
+    /// What it is, in words joined by underscores. `photons_stored` is what `--stats` shows by that name.
+    pub name: &'static str,
+    /// How much of it.
+    pub value: f64,
+    /// Unit; empty for counts and pure numbers.
+    pub unit: &'static str,
+    /// What the user should know or change where the figure is off, in one line.
+    pub advice: Option<String>,
+}
+
+impl ReportEntry {
+    /// A figure as it should be.
+    #[must_use]
+    pub const fn new(name: &'static str, value: f64, unit: &'static str) -> Self {
+        Self { name, value, unit, advice: None }
+    }
+
+    /// The figure with a word to the user.
+    #[must_use]
+    pub fn with_advice(self, advice: impl Into<String>) -> Self {
+        Self { advice: Some(advice.into()), ..self }
     }
 }
 

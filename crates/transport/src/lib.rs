@@ -11,7 +11,7 @@ pub mod path_tracing;
 pub mod photon;
 pub mod render;
 
-pub use integrator::{Control, Integrator, PassEnd, Passes, RayCounts};
+pub use integrator::{Control, Integrator, PassEnd, Passes, RayCounts, ReportEntry};
 pub use method::{INTEGRATORS, method, method_name};
 pub use render::{Flow, Observer, Outcome, Stop, Unobserved, render};
 
