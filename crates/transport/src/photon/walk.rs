@@ -62,6 +62,8 @@ pub struct PhotonVertex<'a> {
     pub medium: Option<MediumId>,
     /// Its events before this surface.
     pub trail: Trail,
+    /// The last of them, if any, also where there were more than the trail holds.
+    pub last_event: Option<Event>,
 }
 
 /// What becomes of a photon that was visited.
@@ -114,6 +116,7 @@ impl PhotonWalk {
         let (mut ray, mut flux, mut trail, mut depth) = (photon.ray, photon.flux, Trail::EMPTY, 0);
         // What a photon starts in shows at the first boundary that it meets.
         let (mut medium, mut knows_medium) = (None, false);
+        let mut last_event = None;
         while let Some(hit) = tracer.intersect(&ray) {
             let surface = scene.surface(&ray, &hit);
             if !knows_medium {
@@ -128,7 +131,8 @@ impl PhotonWalk {
                 continue;
             };
             knows_medium = true;
-            let vertex = PhotonVertex { surface: &surface, bsdf: &bsdf, flux, lambda, medium, trail };
+            let vertex =
+                PhotonVertex { surface: &surface, bsdf: &bsdf, flux, lambda, medium, trail, last_event };
             if visit(&vertex) == Onward::Stop || depth == self.max_depth {
                 return;
             }
@@ -142,7 +146,9 @@ impl PhotonWalk {
             let Some(factor) = reflect_or_absorb(sample.weight, numbers.next_1d()) else { return };
             flux *= factor;
             depth += 1;
-            trail = trail.with(Event::of(&sample, self.sharp_alpha));
+            let event = Event::of(&sample, self.sharp_alpha);
+            trail = trail.with(event);
+            last_event = Some(event);
             medium = scene.medium_towards(&surface, sample.wi, medium);
             ray = surface.spawn_ray(sample.wi);
         }
