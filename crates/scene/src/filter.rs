@@ -203,6 +203,32 @@ impl Filter {
         (along(offset.x, self.radius.x) * along(offset.y, self.radius.y)) as f32
     }
 
+    /// The factor of [`eval`](Self::eval) that depends on the horizontal offset from the pixel's centre, normalised to an integral
+    /// of 1.
+    #[inline]
+    #[must_use]
+    pub fn weight_across(&self, x: f64) -> f64 {
+        self.weight_along(0, x, self.radius.x)
+    }
+
+    /// The same for the vertical offset.
+    #[inline]
+    #[must_use]
+    pub fn weight_down(&self, y: f64) -> f64 {
+        self.weight_along(1, y, self.radius.y)
+    }
+
+    #[inline]
+    fn weight_along(&self, axis: usize, x: f64, radius: f32) -> f64 {
+        let radius = f64::from(radius);
+        let integral = match (&self.axes, self.kind) {
+            (Some(axes), _) => axes[axis].integral,
+            (None, FilterKind::Triangle) => radius * radius,
+            (None, _) => 2.0 * radius,
+        };
+        self.kind.profile(x, radius) / integral
+    }
+
     /// Integral of [`eval`](Self::eval) over the support, in square pixels.
     #[must_use]
     pub const fn integral(&self) -> f32 {

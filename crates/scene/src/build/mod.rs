@@ -88,7 +88,7 @@ impl Scene {
         let film = film::build_film(document, &mut builder.context);
         let sampler = film::build_sampler(document, &mut builder.context);
         let filter = builder.build_filter();
-        let camera = builder.build_camera(&film);
+        let camera = builder.build_camera(&film, &filter);
         builder.report_missing_attributes();
         let lights = builder.build_lights(&geometry);
         // After an error it may be the light that is missing.

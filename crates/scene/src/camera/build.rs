@@ -91,14 +91,14 @@ pub static CAMERAS: &[(&str, &[ParameterSpec])] = &[
 ];
 
 impl Camera {
-    /// Reads a camera for a film of `resolution` pixels and a diagonal in metres, of which `crop` (pixels) is rendered;
+    /// Reads a camera for a film of `resolution` pixels and a diagonal in metres, of which `lit` (pixels) lets light into the image;
     /// problems are reported.
     pub fn from_parameters(
         parameters: &mut Parameters<'_, '_>,
         world_from_camera: AnimatedTransform,
         resolution: [u32; 2],
         diagonal_m: f32,
-        crop: Bounds2,
+        lit: Bounds2,
     ) -> Self {
         let shutter = read_shutter(parameters);
         let size = [resolution[0] as f32, resolution[1] as f32];
@@ -129,7 +129,7 @@ impl Camera {
                 Projection::Perspective(read_perspective(parameters, screen))
             }
         };
-        Self::new(projection, world_from_camera, shutter, resolution, crop)
+        Self::new(projection, world_from_camera, shutter, resolution, lit)
     }
 }
 

@@ -3,7 +3,7 @@
 //!
 //! `we` is the factor between radiance that arrives along a ray and its part in the film:
 //! `mean over the film = integral of we L cos dA dw` over lens and directions. It is normalised over the *whole* film;
-//! what arrives outside of the crop counts nothing. Each projection yields `we`, the density `pdf_a` of lens points and
+//! what arrives beyond the reach of the rendered pixels counts nothing. Each projection yields `we`, the density `pdf_a` of lens points and
 //! `pdf_w` of directions that [`Camera::sample_ray`](super::Camera::sample_ray) has for uniform raster positions, so
 //! that `we cos = pdf_a pdf_w`. Where a position or a direction is fixed, its density is discrete and counts as 1.
 
@@ -128,7 +128,7 @@ fn towards(p: Point3) -> Option<(Ray, LensPoint)> {
 }
 
 impl Camera {
-    /// What the film receives along a ray that starts on the lens and has unit direction; `None` outside of the crop.
+    /// What the film receives along a ray that starts on the lens and has unit direction; `None` where it reaches no pixel.
     /// Rays of a parallel bundle without a lens cannot be met by chance, and which way leads through a real lens is not known:
     /// `None`.
     #[must_use]
@@ -142,7 +142,7 @@ impl Camera {
             Projection::Fisheye(camera) => camera.film_importance(&ray_camera),
             Projection::Realistic(_) => None,
         };
-        result.filter(|result| self.in_crop(result.p_film))
+        result.filter(|result| self.is_lit(result.p_film))
     }
 
     /// Densities `(pdf_a, pdf_w)` of a camera ray for uniform raster positions; zeros if the camera has no such ray.
@@ -174,7 +174,7 @@ impl Camera {
             }
             Projection::Realistic(_) => return None,
         };
-        if !self.in_crop(film.p_film) {
+        if !self.is_lit(film.p_film) {
             return None;
         }
         let p_lens = world_from_camera.point(lens.p_lens);
@@ -191,8 +191,20 @@ impl Camera {
         })
     }
 
+    /// Calls `add` with every raster position where light enters the image that arrives at `p_film`: there, and for panoramas
+    /// also where they go on beyond their border, as far as the pixel filter reaches.
+    #[inline]
+    pub fn for_each_place(&self, p_film: Point2, mut add: impl FnMut(Point2)) {
+        match &self.projection {
+            Projection::Spherical(camera) => {
+                camera.places(p_film).filter(|p| self.is_lit(*p)).for_each(add);
+            }
+            _ => add(p_film),
+        }
+    }
+
     /// The raster position at which a point of the world is sharpest seen (through the middle of the lens), or `None`
-    /// if it is behind the camera or outside of the crop.
+    /// if it is behind the camera or reaches no pixel.
     #[must_use]
     pub fn project(&self, p: Point3, time: f32) -> Option<Point2> {
         let p = self.transform_at(time).inverse().point(p);
@@ -206,11 +218,11 @@ impl Camera {
             Projection::Fisheye(camera) => camera.raster_from_direction(p.as_vector().try_normalized()?)?,
             Projection::Realistic(_) => return None,
         };
-        self.in_crop(p_film).then_some(p_film)
+        self.is_lit(p_film).then_some(p_film)
     }
 
-    fn in_crop(&self, p: Point2) -> bool {
-        let crop = self.crop;
-        p.x >= crop.min.x && p.x < crop.max.x && p.y >= crop.min.y && p.y < crop.max.y
+    fn is_lit(&self, p: Point2) -> bool {
+        let lit = self.lit;
+        p.x >= lit.min.x && p.x < lit.max.x && p.y >= lit.min.y && p.y < lit.max.y
     }
 }

@@ -101,24 +101,25 @@ pub struct Camera {
     /// The same, where it changes, ready to be interpolated.
     motion: Option<Box<Motion>>,
     shutter: Shutter,
-    /// The part of the film that is rendered, in pixels: elsewhere the camera takes no light.
-    crop: Bounds2,
+    /// The part of the raster from where light enters the image, in pixels: elsewhere the camera takes none.
+    lit: Bounds2,
     differentials: MinimumDifferentials,
 }
 
 impl Camera {
-    /// A camera. `resolution` is that of the whole film in pixels; `crop` is the rendered part of it.
+    /// A camera. `resolution` is that of the whole film in pixels; `lit` is the part that is rendered, with what the pixel filter
+    /// reaches beside it.
     #[must_use]
     pub fn new(
         projection: Projection,
         world_from_camera: AnimatedTransform,
         shutter: Shutter,
         resolution: [u32; 2],
-        crop: Bounds2,
+        lit: Bounds2,
     ) -> Self {
         let differentials = MinimumDifferentials::new(&projection, resolution);
         let motion = world_from_camera.is_animated().then(|| Box::new(world_from_camera.motion()));
-        Self { projection, world_from_camera, motion, shutter, crop, differentials }
+        Self { projection, world_from_camera, motion, shutter, lit, differentials }
     }
 
     /// The projection.

@@ -66,6 +66,24 @@ impl Spherical {
         Point2::new(uv.x * self.resolution[0], uv.y * self.resolution[1])
     }
 
+    /// All raster positions around the film that show the same as this one on it: panoramas go on beyond their border.
+    pub(super) fn places(&self, p_film: Point2) -> impl Iterator<Item = Point2> {
+        let [width, height] = self.resolution;
+        let (u, v) = (p_film.x / width, p_film.y / height);
+        let is_folded = self.mapping == SphericalMapping::EqualArea;
+        // Across the poles, then across the sides.
+        let rows = [v, -v, 2.0 - v].into_iter().enumerate().map(move |(i, row)| match (i, is_folded) {
+            (0, _) => (u, row),
+            (_, true) => (1.0 - u, row),
+            (_, false) => ((u + 0.5).fract(), row),
+        });
+        let columns = move |(u, v): (f32, f32)| match is_folded {
+            true => [(u, v), (-u, 1.0 - v), (2.0 - u, 1.0 - v)],
+            false => [(u, v), (u - 1.0, v), (u + 1.0, v)],
+        };
+        rows.flat_map(columns).map(move |(u, v)| Point2::new(u * width, v * height))
+    }
+
     /// Density per steradian of directions when raster positions are uniform over the film.
     #[inline]
     #[must_use]

@@ -7,6 +7,7 @@
 
 mod exact_sum;
 mod settings;
+mod splats;
 mod sums;
 #[cfg(test)]
 mod tests;
@@ -18,6 +19,7 @@ use etendue_image::Image;
 
 pub use exact_sum::ExactSum;
 pub use settings::{AovSpace, FilmKind, FilmSettings, PixelBounds};
+pub use splats::{SplatSums, Splats};
 pub use sums::{FilmSums, MergeError, SampleFaults, SumsError};
 pub use tile::{FilmTile, PixelSample, TileSamples};
 

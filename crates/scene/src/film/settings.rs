@@ -112,7 +112,12 @@ impl FilmSettings {
     #[inline]
     #[must_use]
     pub fn output_rgb(&self, radiance: Sampled, lambda: &Wavelengths) -> [f32; 3] {
-        let rgb = self.sensor.sensor_rgb(radiance, lambda);
+        self.limited(self.sensor.sensor_rgb(radiance, lambda))
+    }
+
+    /// A colour, scaled down to [`max_component`](Self::max_component).
+    #[inline]
+    pub(super) fn limited(&self, rgb: [f32; 3]) -> [f32; 3] {
         let largest = rgb[0].max(rgb[1]).max(rgb[2]);
         if largest > self.max_component { rgb.map(|c| c * (self.max_component / largest)) } else { rgb }
     }

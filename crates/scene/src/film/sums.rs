@@ -22,7 +22,7 @@ pub struct SampleFaults {
 }
 
 impl SampleFaults {
-    fn merge(&mut self, other: Self) {
+    pub(super) fn merge(&mut self, other: Self) {
         self.invalid += other.invalid;
         self.saturated += other.saturated;
         self.first_pixel = self.first_pixel.or(other.first_pixel);

@@ -9,6 +9,7 @@ use std::ops::Range;
 use etendue_math::{Sampler, SamplerSettings};
 use etendue_scene::Scene;
 use etendue_scene::bsdf::{Bsdf, Lobes, TransportMode};
+use etendue_scene::light::LightId;
 use etendue_scene::medium::MediumId;
 use etendue_scene::scene::Surface;
 use etendue_spectrum::{Sampled, Wavelengths};
@@ -50,6 +51,8 @@ impl Default for PhotonWalk {
 /// A place where a photon arrives, on a surface that scatters.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotonVertex<'a> {
+    /// The light that sent it.
+    pub light: LightId,
     /// The surface; its `wo` is the direction towards where the photon comes from.
     pub surface: &'a Surface,
     /// How it scatters.
@@ -131,8 +134,17 @@ impl PhotonWalk {
                 continue;
             };
             knows_medium = true;
-            let vertex =
-                PhotonVertex { surface: &surface, bsdf: &bsdf, flux, lambda, medium, trail, last_event };
+            let light = photon.light;
+            let vertex = PhotonVertex {
+                light,
+                surface: &surface,
+                bsdf: &bsdf,
+                flux,
+                lambda,
+                medium,
+                trail,
+                last_event,
+            };
             if visit(&vertex) == Onward::Stop || depth == self.max_depth {
                 return;
             }
