@@ -10,6 +10,7 @@ pub mod path;
 pub mod path_tracing;
 pub mod photon;
 pub mod render;
+pub mod whitted;
 
 pub use integrator::{Control, Integrator, PassEnd, Passes, RayCounts, ReportEntry};
 pub use method::{INTEGRATORS, method, method_name};

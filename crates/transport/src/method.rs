@@ -9,6 +9,7 @@ use crate::ambient_occlusion::{AmbientOcclusion, OcclusionSettings};
 use crate::integrator::Integrator;
 use crate::lpe::PathExpressions;
 use crate::path_tracing::{PathSettings, PathTracer};
+use crate::whitted::{Whitted, WhittedSettings};
 
 /// What documentation says of a method.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +34,13 @@ pub const INTEGRATORS: &[MethodSpec] = &[
         unbiased: true,
         consistent: true,
         parameters: PathSettings::PARAMETERS,
+    },
+    MethodSpec {
+        name: "whitted",
+        doc: "recursive ray tracing: direct light, mirrors and glass alone (LD?S*E)",
+        unbiased: false,
+        consistent: false,
+        parameters: WhittedSettings::PARAMETERS,
     },
     MethodSpec {
         name: "ao",
@@ -68,7 +76,6 @@ const COMING: &[&str] = &[
     "radiosity",
     "sppm",
     "vcm",
-    "whitted",
 ];
 
 /// Parameters of pbrt's `simplepath` that choose what ours always does.
@@ -105,6 +112,7 @@ pub fn method(entity: &Entity, expressions: PathExpressions) -> (Option<Box<dyn 
     let mut p = Parameters::new(entity, &mut context);
     let integrator: Box<dyn Integrator> = match method_name(name) {
         "ao" => read_occlusion(&mut p, expressions),
+        "whitted" => Box::new(Whitted::new(WhittedSettings::from_parameters(&mut p), expressions)),
         _ => read_path(&mut p, expressions, is_coming),
     };
     p.finish();

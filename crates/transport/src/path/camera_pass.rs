@@ -30,6 +30,10 @@ pub enum WavelengthMode {
 }
 
 impl WavelengthMode {
+    /// Their names in scene files.
+    pub const CHOICES: &'static [(&'static str, Self)] =
+        &[("hero", Self::Hero), ("single", Self::Single), ("bands", Self::Bands)];
+
     /// Wavelengths for a random number in [0, 1).
     #[must_use]
     pub fn sample(self, u: f32) -> Wavelengths {

@@ -180,12 +180,7 @@ impl PathSettings {
             ("scattering", LightStrategy::Scattering),
         ];
         let lights = p.choice("lights", "both", &strategies);
-        let modes = [
-            ("hero", WavelengthMode::Hero),
-            ("single", WavelengthMode::Single),
-            ("bands", WavelengthMode::Bands),
-        ];
-        let wavelengths = p.choice("wavelengths", "hero", &modes);
+        let wavelengths = p.choice("wavelengths", "hero", WavelengthMode::CHOICES);
         let adaptive = AdaptivePixels::from_parameters(p);
         // Read where the scene is built.
         p.ignore("lightsampler");

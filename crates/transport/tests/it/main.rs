@@ -28,3 +28,4 @@ mod scenes;
 mod spectra;
 mod strategies;
 mod surfaces;
+mod whitted;
