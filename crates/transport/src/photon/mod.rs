@@ -6,9 +6,11 @@
 //! photon maps, share [`emit`] and [`walk`].
 
 pub mod emit;
+pub mod map;
 pub mod trail;
 pub mod walk;
 
 pub use emit::{EmittedPhoton, PhotonEmitter};
+pub use map::{Photon, PhotonMap, PhotonMapBuilder, StoredPhoton};
 pub use trail::Trail;
 pub use walk::{Onward, PhotonVertex, PhotonWalk, trace_photons};
