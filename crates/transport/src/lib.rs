@@ -4,6 +4,7 @@
 
 pub mod ambient_occlusion;
 pub mod integrator;
+pub mod light_tracing;
 pub mod lpe;
 pub mod method;
 pub mod path;

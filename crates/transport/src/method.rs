@@ -7,6 +7,7 @@ use etendue_scene::parameters::{BuildContext, ParameterSpec, Parameters};
 
 use crate::ambient_occlusion::{AmbientOcclusion, OcclusionSettings};
 use crate::integrator::Integrator;
+use crate::light_tracing::{LightSettings, LightTracer};
 use crate::lpe::PathExpressions;
 use crate::path_tracing::{PathSettings, PathTracer};
 use crate::whitted::{Whitted, WhittedSettings};
@@ -43,6 +44,13 @@ pub const INTEGRATORS: &[MethodSpec] = &[
         parameters: WhittedSettings::PARAMETERS,
     },
     MethodSpec {
+        name: "light",
+        doc: "light tracing: paths from the lights, seen by the camera; for caustics; mirrors show nothing unless asked to",
+        unbiased: true,
+        consistent: true,
+        parameters: LightSettings::PARAMETERS,
+    },
+    MethodSpec {
         name: "ao",
         doc: "ambient occlusion: how much of the sky each surface sees, whatever lights there are",
         unbiased: false,
@@ -57,6 +65,7 @@ const ALIASES: &[(&str, &str)] = &[
     ("simplepath", "path"),
     ("simplevolpath", "path"),
     ("randomwalk", "path"),
+    ("lightpath", "light"),
     ("ambientocclusion", "ao"),
 ];
 
@@ -66,8 +75,6 @@ const COMING: &[&str] = &[
     "bdpt",
     "distribution",
     "function",
-    "light",
-    "lightpath",
     "mlt",
     "pathmlt",
     "photonmap",
@@ -113,6 +120,7 @@ pub fn method(entity: &Entity, expressions: PathExpressions) -> (Option<Box<dyn 
     let integrator: Box<dyn Integrator> = match method_name(name) {
         "ao" => read_occlusion(&mut p, expressions),
         "whitted" => Box::new(Whitted::new(WhittedSettings::from_parameters(&mut p), expressions)),
+        "light" => Box::new(LightTracer::new(LightSettings::from_parameters(&mut p), expressions)),
         _ => read_path(&mut p, expressions, is_coming),
     };
     p.finish();

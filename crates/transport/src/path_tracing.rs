@@ -8,6 +8,7 @@
 //! SPEC: PT-1 to PT-5, EQ-1, EQ-7, MC-11, MC-12, MC-15.
 
 mod artist;
+mod mirrored;
 mod reuse;
 mod settings;
 mod walk;
@@ -22,6 +23,7 @@ use crate::integrator::{Control, Integrator, PassEnd, Passes};
 use crate::lpe::PathExpressions;
 use crate::path::camera_pass::{CameraPass, CameraPath, Follow, FollowedPath, Tracer};
 
+pub(crate) use mirrored::Mirrored;
 pub use settings::{LightStrategy, PathSettings};
 
 use self::settings::MAX_REUSE;

@@ -3,11 +3,14 @@
 //! A path from the lights reaches the film at a place p of its own, and belongs to every pixel whose filter reaches there:
 //! the pixel at x gains `f(p - x) / integral f` of it. Filters cost no noise here, negative lobes no sign of the light.
 //!
+//! Of a filter that reaches hundreds of pixels one is drawn for each splat, as if the filter were blurred by a pixel, which does not
+//! show at that width.
+//!
 //! Tasks gather [`Splats`] as they come; [`SplatSums`] adds those of a pass up, for each pixel in the order of the paths, so
 //! that the number of threads changes no bit. What a pixel got in a pass then joins the pixel's one sample of that pass: variance,
 //! merging and checkpoints know no difference.
 
-use etendue_math::Point2;
+use etendue_math::{Point2, Vector2, hash64};
 use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;
 
@@ -17,6 +20,9 @@ use crate::filter::Filter;
 
 /// Strips of rows that are added up in parallel. Each looks at all splats, so that there should not be many.
 const N_BANDS: usize = 16;
+
+/// Filters that reach more pixels are sampled.
+const MANY_PIXELS: f32 = 400.0;
 
 /// What a task brings to the film.
 #[derive(Debug)]
@@ -108,7 +114,13 @@ impl SplatSums {
             let top = bounds.min[1] + (band * rows) as u32;
             let bottom = bounds.max[1].min(top + rows as u32);
             let bounds = PixelBounds { min: [bounds.min[0], top], max: [bounds.max[0], bottom] };
-            Band { bounds, stride, sums, filter, across: Vec::new() }.add(tasks);
+            let is_wide = 4.0 * filter.radius().x * filter.radius().y > MANY_PIXELS;
+            let mut band = Band { bounds, stride, sums, filter, across: Vec::new() };
+            for task in tasks {
+                for (p, record) in task.places.iter().zip(task.values.chunks_exact(stride)) {
+                    if is_wide { band.add_by_chance(*p, record) } else { band.add(*p, record) }
+                }
+            }
         });
         for task in tasks {
             self.faults.merge(task.faults);
@@ -167,16 +179,8 @@ struct Band<'s> {
 }
 
 impl Band<'_> {
-    fn add(&mut self, tasks: &[Splats<'_>]) {
-        for task in tasks {
-            for (p, record) in task.places.iter().zip(task.values.chunks_exact(self.stride)) {
-                self.add_splat(*p, record);
-            }
-        }
-    }
-
     #[inline]
-    fn add_splat(&mut self, p: Point2, record: &[f32]) {
+    fn add(&mut self, p: Point2, record: &[f32]) {
         let (bounds, radius) = (self.bounds, self.filter.radius());
         let rows = reached(p.y, radius.y, bounds.min[1], bounds.max[1]);
         if rows.is_empty() {
@@ -190,13 +194,31 @@ impl Band<'_> {
             let weight_down = self.filter.weight_down(offset(p.y, y));
             let row = (y - bounds.min[1]) as usize * bounds.width() as usize;
             for (x, weight_across) in columns.clone().zip(&self.across) {
-                let weight = weight_across * weight_down;
                 let first = (row + (x - bounds.min[0]) as usize) * self.stride;
-                for (sum, value) in self.sums[first..first + self.stride].iter_mut().zip(record) {
-                    *sum += weight * f64::from(*value);
-                }
+                add_weighted(&mut self.sums[first..first + self.stride], record, weight_across * weight_down);
             }
         }
+    }
+
+    /// Adds all to one pixel, chosen by the filter. The choice depends on the place alone, so that all bands agree on it.
+    fn add_by_chance(&mut self, p: Point2, record: &[f32]) {
+        let bits = hash64(&[u64::from(p.x.to_bits()) << 32 | u64::from(p.y.to_bits())]);
+        let unit = |bits: u64| (bits & 0xff_ffff) as f32 / (1_u32 << 24) as f32;
+        let chosen = self.filter.sample(Point2::new(unit(bits), unit(bits >> 32)));
+        let Vector2 { x, y } = Vector2::new(p.x - chosen.offset.x, p.y - chosen.offset.y);
+        let PixelBounds { min, max } = self.bounds;
+        let is_within = |p: f32, axis: usize| p >= min[axis] as f32 && p < max[axis] as f32;
+        if is_within(x, 0) && is_within(y, 1) {
+            let first = self.bounds.index([x as u32, y as u32]) * self.stride;
+            add_weighted(&mut self.sums[first..first + self.stride], record, f64::from(chosen.weight));
+        }
+    }
+}
+
+#[inline]
+fn add_weighted(sums: &mut [f64], record: &[f32], weight: f64) {
+    for (sum, value) in sums.iter_mut().zip(record) {
+        *sum += weight * f64::from(*value);
     }
 }
 
@@ -206,3 +228,6 @@ fn reached(p: f32, radius: f32, min: u32, max: u32) -> std::ops::Range<u32> {
     let bound = |x: f64| (x.floor() + 1.0).clamp(f64::from(min), f64::from(max)) as u32;
     bound(p - radius)..bound(p + radius)
 }
+
+#[cfg(test)]
+mod tests;

@@ -146,6 +146,24 @@ impl CameraPass<'_> {
         memory: &mut Vec<TileSamples>,
         method: &F,
     ) -> PassEnd {
+        let end = self.gather(scene, pass, film, control, memory, method);
+        // Whole passes only, but for the very first: better a part of a picture than none.
+        if end == PassEnd::Complete || film.n_passes() == 0 {
+            film.add_tiles(memory);
+        }
+        end
+    }
+
+    /// Gathers one sample for every pixel in `memory`, and leaves the film as it is. A cancelled pass lacks some of the tiles.
+    pub fn gather<F: Follow>(
+        &self,
+        scene: &Scene,
+        pass: u64,
+        film: &Film,
+        control: &Control<'_>,
+        memory: &mut Vec<TileSamples>,
+        method: &F,
+    ) -> PassEnd {
         let tiles = film.tiles(TILE_SIZE);
         memory.resize_with(tiles.len(), TileSamples::default);
         let finished: Vec<Option<TileSamples>> = tiles
@@ -163,10 +181,6 @@ impl CameraPass<'_> {
             .collect();
         let complete = finished.iter().all(Option::is_some);
         memory.extend(finished.into_iter().flatten());
-        // Whole passes only, but for the very first: better a part of a picture than none.
-        if complete || film.n_passes() == 0 {
-            film.add_tiles(memory);
-        }
         if complete { PassEnd::Complete } else { PassEnd::Cancelled }
     }
 

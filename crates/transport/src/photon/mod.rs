@@ -7,10 +7,12 @@
 
 pub mod emit;
 pub mod map;
+pub mod switches;
 pub mod trail;
 pub mod walk;
 
 pub use emit::{EmittedPhoton, PhotonEmitter};
 pub use map::{Photon, PhotonMap, PhotonMapBuilder, StoredPhoton};
+pub use switches::Switches;
 pub use trail::Trail;
 pub use walk::{Onward, PhotonVertex, PhotonWalk, trace_photons};

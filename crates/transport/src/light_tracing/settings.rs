@@ -1,0 +1,106 @@
+//! What scene files may say of light tracing.
+
+use etendue_scene::parameters::{ParameterSpec, Parameters};
+
+use crate::lpe::SHARP_ALPHA;
+use crate::path::camera_pass::WavelengthMode;
+use crate::path_tracing::PathSettings;
+
+/// Most paths of a pass.
+const MAX_PATHS: u32 = 1 << 30;
+
+/// Settings of light tracing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSettings {
+    /// Most scattering events of a path, that which the camera sees included; longer paths are lost, which darkens.
+    pub max_depth: u32,
+    /// Paths from the lights in each pass; `None` for one for each pixel.
+    pub n_paths: Option<u32>,
+    /// What mirrors and glass show is found by paths from the camera.
+    pub mirrors: bool,
+    /// Glossy events narrower than this count as specular in path expressions without `G` (SPEC LPE-5).
+    pub sharp_alpha: f32,
+    /// How wavelengths are chosen.
+    pub wavelengths: WavelengthMode,
+}
+
+impl Default for LightSettings {
+    fn default() -> Self {
+        Self {
+            max_depth: 5,
+            n_paths: None,
+            mirrors: false,
+            sharp_alpha: SHARP_ALPHA,
+            wavelengths: WavelengthMode::default(),
+        }
+    }
+}
+
+impl LightSettings {
+    /// Parameters in scene files.
+    pub const PARAMETERS: &'static [ParameterSpec] = &[
+        ParameterSpec {
+            name: "maxdepth",
+            kind: "integer",
+            default: "5",
+            unit: "",
+            doc: "most scattering events of a path; longer paths are lost",
+        },
+        ParameterSpec {
+            name: "lightpaths",
+            kind: "integer",
+            default: "0",
+            unit: "",
+            doc: "paths from the lights in each pass; 0 for as many as there are pixels",
+        },
+        ParameterSpec {
+            name: "mirrors",
+            kind: "bool",
+            default: "false",
+            unit: "",
+            doc: "find what mirrors and clear glass show by paths from the camera, else they show nothing",
+        },
+        ParameterSpec {
+            name: "sharpalpha",
+            kind: "float",
+            default: "0.1",
+            unit: "",
+            doc: "width of microfacets below which glossy events count as S in path expressions without G, else as D",
+        },
+        ParameterSpec {
+            name: "wavelengths",
+            kind: "string",
+            default: "hero",
+            unit: "",
+            doc: "wavelengths of a path: hero (four), single, or bands (linear sRGB, as renderers without spectra)",
+        },
+    ];
+
+    /// Reads the parameters of an integrator entity.
+    pub fn from_parameters(p: &mut Parameters<'_, '_>) -> Self {
+        let default = Self::default();
+        let max_depth = p.count("maxdepth", default.max_depth);
+        let n_paths = p.count_within("lightpaths", 0, 0, MAX_PATHS);
+        let mirrors = p.bool("mirrors", default.mirrors);
+        let sharp_alpha = p.float("sharpalpha", default.sharp_alpha);
+        let modes = [
+            ("hero", WavelengthMode::Hero),
+            ("single", WavelengthMode::Single),
+            ("bands", WavelengthMode::Bands),
+        ];
+        let wavelengths = p.choice("wavelengths", "hero", &modes);
+        // Read where the scene is built; lights send paths by their power.
+        p.ignore("lightsampler");
+        Self { max_depth, n_paths: (n_paths > 0).then_some(n_paths), mirrors, sharp_alpha, wavelengths }
+    }
+
+    /// Of the paths from the camera that show what emits and, where wanted, what mirrors show.
+    pub(super) fn of_camera_paths(&self) -> PathSettings {
+        PathSettings {
+            max_depth: if self.mirrors { self.max_depth } else { 0 },
+            sharp_alpha: self.sharp_alpha,
+            wavelengths: self.wavelengths,
+            ..PathSettings::default()
+        }
+    }
+}
