@@ -15,6 +15,8 @@ use etendue::spectrum::named_spectrum_names;
 use etendue::transport::INTEGRATORS;
 use serde_json::{Value, json};
 
+use etendue::image::tonemap::{OPERATORS, OperatorSpec};
+
 use crate::args::{ListArguments, ListKind};
 use crate::failure::Result;
 
@@ -72,6 +74,18 @@ fn tabled(table: &'static [(&'static str, &'static [ParameterSpec])]) -> Vec<Ite
     table.iter().map(|(name, parameters)| Item::new(name, "", parameters)).collect()
 }
 
+fn operator_item(operator: &OperatorSpec) -> Item {
+    let parameter = |[name, default, doc]: &[&'static str; 3]| ParameterSpec {
+        name,
+        kind: "float",
+        default,
+        unit: "",
+        doc,
+    };
+    let parameters: Vec<ParameterSpec> = operator.parameters.iter().map(parameter).collect();
+    Item::new(operator.name, operator.doc, &parameters)
+}
+
 fn items(kind: ListKind) -> Vec<Item> {
     match kind {
         ListKind::Integrators => INTEGRATORS
@@ -111,14 +125,7 @@ fn items(kind: ListKind) -> Vec<Item> {
         ListKind::Accelerators => {
             ACCELERATORS.iter().map(|(name, doc, parameters)| Item::new(name, doc, parameters)).collect()
         }
-        ListKind::Tonemappers => [
-            ("clamp", "clip to [0, 1]"),
-            ("maximum", "divide by the largest value"),
-            ("exponential", "1 - exp(-L / mean)"),
-            ("reinhard", "photographic operator, global"),
-        ]
-        .map(|(name, doc)| Item::new(name, doc, &[]))
-        .into(),
+        ListKind::Tonemappers => OPERATORS.iter().map(operator_item).collect(),
         ListKind::Spectra => named_spectrum_names().iter().map(|name| Item::new(name, "", &[])).collect(),
         ListKind::Scenes => GENERATORS
             .iter()

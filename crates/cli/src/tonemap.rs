@@ -1,11 +1,14 @@
 //! `etendue tonemap`.
 
-use etendue::image::tonemap::{Dither, Operator, Quantization, Reinhard, apply};
+use etendue::image::tonemap::{
+    Dither, Operator, Quantization, Reinhard, ReinhardLocal, apply, automatic_exposure,
+};
 use etendue::image::{Image, srgb_encode};
 use etendue::io::images::{read_image, write_image, write_png, write_ppm};
 use etendue::spectrum::cmyk::Cmyk;
+use etendue::spectrum::{ColorSpace, ColorSpaceName, Xyz, white_balance};
 
-use crate::args::{OperatorArgument, TonemapArguments};
+use crate::args::{Exposure, TonemapArguments};
 use crate::failure::{Failure, Result};
 use crate::outputs;
 
@@ -17,24 +20,28 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
     {
         return Err(Failure::Usage(format!("{}: inks are written as .exr", path.display())));
     }
-    let image = read_image(&arguments.image).map_err(|error| Failure::Usage(error.to_string()))?;
+    let mut image = read_image(&arguments.image).map_err(|error| Failure::Usage(error.to_string()))?;
     if image.rgb_pixels().is_none() {
         return Err(Failure::Usage(format!(
             "{}: there are no channels R, G, B or Y",
             arguments.image.display()
         )));
     }
-    let operator = match arguments.operator {
-        OperatorArgument::Clamp => Operator::Clamp,
-        OperatorArgument::Maximum => Operator::DivideByMaximum,
-        OperatorArgument::Exponential => Operator::Exponential,
-        OperatorArgument::Reinhard => Operator::Reinhard(Reinhard {
-            key: arguments.key as f32,
-            white: arguments.white.map(|w| w as f32),
-            ..Reinhard::default()
-        }),
+    if let Some(white) = arguments.white_balance {
+        balance_white(&mut image, white);
+    }
+    let operator = with_options(arguments);
+    let exposure = arguments.exposure.unwrap_or(match operator {
+        Operator::Display(_) => Exposure::Automatic,
+        _ => Exposure::Stops(0.0),
+    });
+    let stops = match exposure {
+        Exposure::Stops(stops) => stops,
+        Exposure::Automatic => {
+            automatic_exposure(&image, arguments.key.map_or(MIDDLE_GREY, |key| key as f32))
+        }
     };
-    let mapped = apply(&image, operator, arguments.exposure);
+    let mapped = apply(&image, operator, stops);
     if arguments.cmyk {
         let inks = inks(&mapped);
         return outputs::write_all(&arguments.outputs, |path| write_image(path, &inks));
@@ -46,6 +53,38 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
         "ppm" => write_ppm(path, &mapped, quantization),
         _ => write_image(path, &mapped),
     })
+}
+
+/// What automatic exposure gives the log-average luminance.
+const MIDDLE_GREY: f32 = 0.18;
+
+/// The operator, with the parameters that have options of their own.
+fn with_options(arguments: &TonemapArguments) -> Operator {
+    let mut operator = arguments.operator;
+    match &mut operator {
+        Operator::Reinhard(Reinhard { key, white, .. }) => {
+            *key = arguments.key.map_or(*key, |key| key as f32);
+            *white = arguments.white.map(|white| white as f32).or(*white);
+        }
+        Operator::ReinhardLocal(ReinhardLocal { key, .. }) => {
+            *key = arguments.key.map_or(*key, |key| key as f32);
+        }
+        _ => {}
+    }
+    operator
+}
+
+/// Scales the responses of the eye's cones so that light of this chromaticity becomes white.
+fn balance_white(image: &mut Image, white: [f32; 2]) {
+    let space = ColorSpace::get(ColorSpaceName::Srgb);
+    let target = space.to_xyz([1.0; 3]).chromaticity();
+    let matrix = white_balance(white, target);
+    let pixels = image.rgb_pixels().unwrap_or_default().into_iter().map(|rgb| {
+        let xyz = space.to_xyz(rgb).to_array();
+        space.to_rgb(Xyz::from(matrix.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])))
+    });
+    let pixels: Vec<[f32; 3]> = pixels.collect();
+    image.set_rgb("", &pixels);
 }
 
 /// The inks of a picture, one channel each.

@@ -1,22 +1,55 @@
-//! From radiance to a display: global tone mapping and display encoding.
+//! From radiance to a display: tone mapping and display encoding (SPEC TONE-1 to TONE-8, TONE-11, TONE-12).
 //!
-//! An operator changes the luminance `L` of a pixel (Rec. 709 weights) to `L_d` and scales its RGB by `L_d / L`,
-//! which keeps the hue. A saturated pixel may then leave [0, 1] in one channel; [`to_u8`] clips it.
+//! The world has luminances from starlight to the sun, a display some two or three powers of ten. An operator changes the
+//! luminance `L` of a pixel (Rec. 709 weights) to `L_d` and scales its RGB by `L_d / L`, which keeps the hue; a saturated pixel
+//! may then leave [0, 1] in one channel, and [`to_u8`] clips it. Display curves map channels instead, so that bright colours
+//! turn white. **Global** operators map equal pixels alike and are quick; **local** ones look at the surroundings of a pixel,
+//! and keep texture that a global curve would flatten.
 //!
 //! ```text
 //! exponential  L_d = 1 - exp(-L / L_mean)
+//! logarithmic  L_d = 0.01 D / log10(L_max + 1) * ln(L + 1) / ln(2 + 8 (L / L_max)^(ln b / ln 0.5))
 //! Reinhard     L_s = key L / L_avg,   L_avg = exp(mean(log(delta + L))),   L_d = L_s / (1 + L_s)
 //! with white   L_d = L_s (1 + L_s / L_w^2) / (1 + L_s)
 //! ```
 //!
 //! The exponential curve is the cumulative distribution of an exponential law of mean `L_mean`, so luminances of
 //! that law come out uniform. The photographic operator is that of Reinhard, Stark, Shirley, Ferwerda 2002,
-//! "Photographic Tone Reproduction for Digital Images"; `delta` keeps black pixels finite. The curves are global:
-//! equal pixels stay equal. Statistics skip pixels that are not finite.
+//! "Photographic Tone Reproduction for Digital Images"; `delta` keeps black pixels finite. The logarithmic one is that of Drago,
+//! Myszkowski, Annen and Chiba 2003, "Adaptive Logarithmic Mapping For Displaying High Contrast Scenes", of luminances over
+//! the log-average. Statistics skip pixels that are not finite.
+//!
+//! # To add an operator
+//! A variant of [`Operator`] with a struct of its parameters, a file in `tonemap/`, an arm in [`apply`], its name in
+//! [`OPERATORS`], a line in the tables of `tests.rs`.
 
-use crate::{Encoding, Image, luminance};
+mod bilateral;
+mod display;
+mod global;
+mod gradient;
+mod histogram;
+mod local;
+mod named;
+mod plane;
+mod poisson;
+mod quantize;
 
-/// A global tone curve.
+use rayon::prelude::*;
+
+use crate::{Image, luminance};
+
+pub use bilateral::Bilateral;
+pub use display::DisplayCurve;
+pub use gradient::Gradient;
+pub use histogram::HistogramAdjustment;
+pub use local::ReinhardLocal;
+pub use named::{OPERATORS, OperatorSpec};
+pub use quantize::{Dither, Quantization, to_u8};
+
+use self::global::Curve;
+use self::plane::Plane;
+
+/// A tone mapping operator.
 #[derive(Copy, Clone, Debug, PartialEq, Default)]
 pub enum Operator {
     /// Clips every channel to [0, 1].
@@ -26,8 +59,20 @@ pub enum Operator {
     DivideByMaximum,
     /// `1 - exp(-L / L_mean)` with the arithmetic mean luminance.
     Exponential,
+    /// The adaptive logarithm of Drago et al. 2003.
+    Logarithmic(Logarithmic),
     /// The photographic operator of Reinhard et al. 2002.
     Reinhard(Reinhard),
+    /// A curve of a film or display.
+    Display(DisplayCurve),
+    /// Histogram adjustment of Larson et al. 1997.
+    Histogram(HistogramAdjustment),
+    /// The photographic operator with dodging and burning.
+    ReinhardLocal(ReinhardLocal),
+    /// Compression of the base of a bilateral filter, Durand and Dorsey 2002.
+    Bilateral(Bilateral),
+    /// Compression of gradients, Fattal et al. 2002.
+    Gradient(Gradient),
 }
 
 /// Parameters of the photographic operator.
@@ -47,20 +92,35 @@ impl Default for Reinhard {
     }
 }
 
+/// Parameters of the adaptive logarithm.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Logarithmic {
+    /// b in the paper, in (0, 1): less is brighter in the middle tones.
+    pub bias: f32,
+    /// Largest luminance of the display in cd/m^2, D in the formula; 100 shows the largest luminance as white.
+    pub display: f32,
+}
+
+impl Default for Logarithmic {
+    fn default() -> Self {
+        Self { bias: 0.85, display: 100.0 }
+    }
+}
+
 /// Applies exposure (a factor of 2^`exposure_ev`) and an operator to the picture of an image. The result has
 /// channels `R`, `G`, `B` in linear light, `A` unchanged where there is one, and the metadata; other layers are left
-/// out. NaN becomes black and infinity white.
+/// out. NaN becomes black and infinity white. Only clamping, display curves and the division by the maximum of a part of a
+/// picture notice the exposure: the others adapt.
 pub fn apply(image: &Image, operator: Operator, exposure_ev: f32) -> Image {
     let mut mapped = Image::new(image.width, image.height);
     mapped.metadata = image.metadata.clone();
     let Some(mut pixels) = image.rgb_pixels() else { return mapped };
     let exposure = exposure_ev.exp2();
-    for pixel in &mut pixels {
-        *pixel = pixel.map(|value| value * exposure);
-    }
-    let curve = Curve::of_pixels(operator, &pixels);
-    for pixel in &mut pixels {
-        *pixel = curve.map(*pixel);
+    pixels.par_iter_mut().for_each(|pixel| *pixel = pixel.map(|value| value * exposure));
+    if let Some(curve) = Curve::of_pixels(operator, &pixels) {
+        pixels.par_iter_mut().for_each(|pixel| *pixel = curve.map(*pixel));
+    } else {
+        map_by_surroundings(operator, image.width, &mut pixels);
     }
     mapped.set_rgb("", &pixels);
     if let Some(alpha) = image.channel("A") {
@@ -69,153 +129,86 @@ pub fn apply(image: &Image, operator: Operator, exposure_ev: f32) -> Image {
     mapped
 }
 
-/// Logarithmic average luminance `exp(mean(log(delta + L)))` of the finite pixels; `None` when there are none.
+/// The exposure in stops that gives the log-average of the lit pixels this luminance; 0 for a black picture.
+#[must_use]
+pub fn automatic_exposure(image: &Image, key: f32) -> f32 {
+    let average = image.rgb_pixels().and_then(|pixels| log_average_luminance(&pixels, 0.0));
+    average.map_or(0.0, |average| (f64::from(key) / average).log2() as f32)
+}
+
+/// Pixels darker than this share of the log-average count as so bright where logarithms are taken.
+const DARKEST: f32 = 1e-4;
+
+/// Operators that need the whole picture.
+fn map_by_surroundings(operator: Operator, width: usize, pixels: &mut [[f32; 3]]) {
+    let Some(average) = log_average_luminance(pixels, 0.0).filter(|average| *average > 0.0) else {
+        pixels.fill([0.0; 3]);
+        return;
+    };
+    let floor = DARKEST * average as f32;
+    let ceiling = finite_luminances(pixels).fold(0.0, f64::max) as f32;
+    let luminances = pixels.iter().map(|&pixel| {
+        let l = luminance(pixel);
+        if l.is_nan() { floor } else { l.clamp(floor, ceiling.max(floor)) }
+    });
+    let plane = Plane::new(width, pixels.len() / width, luminances.collect());
+    let (shown, saturation) = match operator {
+        Operator::ReinhardLocal(operator) => {
+            let scale = operator.key / average as f32;
+            (operator.map(&plane.map(|l| l * scale)), 1.0)
+        }
+        Operator::Bilateral(operator) => {
+            (operator.map(&plane.map(f32::log10)).map(|shown| 10_f32.powf(shown)), 1.0)
+        }
+        Operator::Gradient(operator) => {
+            (shown_range(&operator.map(&plane.map(f32::ln))), operator.saturation)
+        }
+        Operator::Histogram(operator) => {
+            let ln = plane.map(f32::ln);
+            let curve = operator.curve(&ln);
+            (ln.map(|l| curve.map(l)), 1.0)
+        }
+        _ => (plane.clone(), 1.0),
+    };
+    pixels.par_iter_mut().zip(&plane.values).zip(&shown.values).for_each(|((pixel, l), shown)| {
+        *pixel = recoloured(*pixel, *l, *shown, saturation);
+    });
+}
+
+/// A pixel of luminance `l` shown with another; the ratios of its channels to it are raised to the power `saturation`.
+fn recoloured(pixel: [f32; 3], l: f32, shown: f32, saturation: f32) -> [f32; 3] {
+    if pixel.iter().any(|value| value.is_nan()) {
+        return [0.0; 3];
+    }
+    if pixel.contains(&f32::INFINITY) {
+        return [1.0; 3];
+    }
+    pixel.map(|value| {
+        let ratio = value.max(0.0) / l;
+        shown * if saturation == 1.0 { ratio } else { ratio.powf(saturation) }
+    })
+}
+
+/// Luminances of logarithms that are known up to a constant: the brightest but 1 % become white.
+fn shown_range(ln: &Plane) -> Plane {
+    let mut sorted = ln.values.clone();
+    let index = (sorted.len() - 1) * 99 / 100;
+    let (_, white, _) = sorted.select_nth_unstable_by(index, f32::total_cmp);
+    let white = *white;
+    ln.map(|value| (value - white).exp().min(1.0))
+}
+
+/// Logarithmic average luminance `exp(mean(log(delta + L)))` of the finite pixels, without those that are black if `delta` is
+/// 0; `None` when there are none.
 pub fn log_average_luminance(pixels: &[[f32; 3]], delta: f32) -> Option<f64> {
-    let log_mean = mean(finite_luminances(pixels).map(|l| (l + f64::from(delta)).ln()))?;
+    let positive = finite_luminances(pixels).map(|l| l + f64::from(delta)).filter(|l| *l > 0.0);
+    let log_mean = mean(positive.map(f64::ln))?;
     Some(log_mean.exp())
 }
 
 /// Arithmetic mean luminance of the finite pixels; `None` when there are none.
 pub fn mean_luminance(pixels: &[[f32; 3]]) -> Option<f64> {
     mean(finite_luminances(pixels))
-}
-
-/// An operator with the statistics of its image.
-#[derive(Copy, Clone, Debug)]
-enum Curve {
-    Clamp,
-    Scale(f64),
-    Exponential { mean: f64 },
-    Reinhard { scale: f64, inverse_white_squared: f64 },
-}
-
-impl Curve {
-    fn of_pixels(operator: Operator, pixels: &[[f32; 3]]) -> Curve {
-        match operator {
-            Operator::Clamp => Curve::Clamp,
-            Operator::DivideByMaximum => {
-                let finite = pixels.iter().flatten().copied().filter(|value| value.is_finite());
-                Curve::Scale(positive_reciprocal(f64::from(finite.fold(0.0, f32::max))))
-            }
-            Operator::Exponential => Curve::Exponential { mean: mean_luminance(pixels).unwrap_or(0.0) },
-            Operator::Reinhard(Reinhard { key, delta, white }) => {
-                let average = log_average_luminance(pixels, delta).unwrap_or(0.0);
-                let inverse_white_squared = white.map_or(0.0, |white| f64::from(white).powi(-2));
-                Curve::Reinhard {
-                    scale: f64::from(key) * positive_reciprocal(average),
-                    inverse_white_squared,
-                }
-            }
-        }
-    }
-
-    /// One pixel through the curve.
-    fn map(self, pixel: [f32; 3]) -> [f32; 3] {
-        if pixel.iter().any(|value| value.is_nan()) {
-            return [0.0; 3];
-        }
-        if let Curve::Clamp = self {
-            return pixel.map(|value| value.clamp(0.0, 1.0));
-        }
-        if pixel.contains(&f32::INFINITY) {
-            return [1.0; 3];
-        }
-        let pixel = pixel.map(|value| f64::from(value.max(0.0)));
-        let scale = self.scale(luminance_f64(pixel));
-        pixel.map(|value| (value * scale) as f32)
-    }
-
-    /// `L_d / L` for a finite luminance.
-    fn scale(self, l: f64) -> f64 {
-        if l <= 0.0 {
-            return 0.0;
-        }
-        match self {
-            Curve::Clamp => 1.0,
-            Curve::Scale(scale) => scale,
-            Curve::Exponential { mean } if mean > 0.0 => -(-l / mean).exp_m1() / l,
-            Curve::Exponential { .. } => 0.0,
-            Curve::Reinhard { scale, inverse_white_squared } => {
-                let scaled = l * scale;
-                let shown = scaled * (1.0 + scaled * inverse_white_squared) / (1.0 + scaled);
-                shown.min(1.0) / l
-            }
-        }
-    }
-}
-
-/// How linear light becomes bytes.
-#[derive(Copy, Clone, Debug, PartialEq, Default)]
-pub struct Quantization {
-    /// Transfer function, sRGB unless told otherwise.
-    pub encoding: Encoding,
-    /// What hides the steps between bytes.
-    pub dither: Dither,
-}
-
-/// Where between two bytes a value is rounded up.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, Default)]
-pub enum Dither {
-    /// At one half: plain rounding.
-    #[default]
-    None,
-    /// At the threshold of an 8 by 8 Bayer matrix.
-    Ordered,
-    /// At a threshold hashed from the pixel, the channel and this seed.
-    Hashed(u64),
-}
-
-/// Bytes of the picture of an image: RGB clipped to [0, 1], encoded and rounded, row-major. `None` for an image
-/// without colour. NaN becomes 0.
-pub fn to_u8(image: &Image, quantization: Quantization) -> Option<Vec<[u8; 3]>> {
-    let pixels = image.rgb_pixels()?;
-    let quantize = |(index, pixel): (usize, [f32; 3])| {
-        let position = [index % image.width, index / image.width];
-        std::array::from_fn(|channel| quantize_value(pixel[channel], position, channel, quantization))
-    };
-    Some(pixels.into_iter().enumerate().map(quantize).collect())
-}
-
-/// The byte of one linear value.
-fn quantize_value(value: f32, position: [usize; 2], channel: usize, quantization: Quantization) -> u8 {
-    if value.is_nan() {
-        return 0;
-    }
-    let stored = quantization.encoding.encode(value.clamp(0.0, 1.0));
-    let offset = quantization.dither.offset(position, channel);
-    // Casts from float to integer saturate, so the brightest value plus its offset stays 255.
-    (stored * 255.0 + offset).floor() as u8
-}
-
-impl Dither {
-    /// Added before rounding down, inside (0, 1) and away from both ends by more than the rounding of a byte value
-    /// that is exact already.
-    fn offset(self, [x, y]: [usize; 2], channel: usize) -> f32 {
-        match self {
-            Dither::None => 0.5,
-            Dither::Ordered => (bayer_8x8(x, y) as f32 + 0.5) / 64.0,
-            Dither::Hashed(seed) => {
-                let position = (x as u64) | ((y as u64) << 28) | ((channel as u64) << 56);
-                let hash = mix(mix(seed ^ 0x9e37_79b9_7f4a_7c15).wrapping_add(position));
-                0.001 + 0.998 * ((hash >> 40) as f32 / (1u32 << 24) as f32)
-            }
-        }
-    }
-}
-
-/// Entry 0..64 of the recursive Bayer matrix: the interleaved bits of x ^ y and y, reversed.
-fn bayer_8x8(x: usize, y: usize) -> usize {
-    (0..3).fold(0, |entry, bit| {
-        let (x, y) = ((x >> bit) & 1, (y >> bit) & 1);
-        entry | (((x ^ y) << 1 | y) << (2 * (2 - bit)))
-    })
-}
-
-/// A bijection of 64-bit words that spreads every input bit over all output bits (Steele et al. 2014, `SplitMix`).
-fn mix(mut word: u64) -> u64 {
-    word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    word ^ (word >> 31)
 }
 
 /// Non-negative luminances of the finite pixels.
@@ -226,14 +219,6 @@ fn finite_luminances(pixels: &[[f32; 3]]) -> impl Iterator<Item = f64> {
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, count) = values.fold((0.0, 0u64), |(sum, count), value| (sum + value, count + 1));
     (count > 0).then(|| sum / count as f64)
-}
-
-fn positive_reciprocal(value: f64) -> f64 {
-    if value > 0.0 { value.recip() } else { 0.0 }
-}
-
-fn luminance_f64([r, g, b]: [f64; 3]) -> f64 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 #[cfg(test)]

@@ -6,9 +6,9 @@
 use std::sync::OnceLock;
 
 use crate::blackbody;
-use crate::cie::parse_columns;
+use crate::cie::{integrate_1nm, parse_columns};
 use crate::tables::{dense_nm, piecewise_linear};
-use crate::{LAMBDA_MAX_NM, N_DENSE};
+use crate::{LAMBDA_MAX_NM, LAMBDA_MIN_NM, N_DENSE, Xyz};
 
 /// Relative power at every nm from 360 to 830 nm, about 1 at 560 nm, of daylight of a nominal temperature in kelvin
 /// (6500 for D65). Below 4000 K, where there is no daylight, a black body takes its place.
@@ -28,6 +28,14 @@ pub fn daylight(kelvin: f32) -> Vec<f32> {
             ((a + m1 * b + m2 * c) * 0.01) as f32
         })
         .collect()
+}
+
+/// Chromaticity (x, y) of [`daylight`] of a colour temperature in kelvin.
+#[must_use]
+pub fn chromaticity_of_temperature(kelvin: f32) -> [f32; 2] {
+    let values = daylight(kelvin);
+    let at = |nm: f32| values[((nm - LAMBDA_MIN_NM) as usize).min(N_DENSE - 1)];
+    Xyz::from(integrate_1nm(at)).chromaticity()
 }
 
 /// Chromaticity (x, y) of daylight; the fit is meant for 4000 to 25000 K.

@@ -87,7 +87,8 @@ fn refused_comparisons() {
 fn tonemapping() {
     let folder = Folder::with_scene(ROOM);
     let radiance = folder.render("a", "--spp 8");
-    for operator in ["clamp", "maximum", "exponential", "reinhard"] {
+    let operators = "clamp maximum exponential logarithmic reinhard reinhard-local bilateral gradient histogram filmic aces agx";
+    for operator in operators.split(' ') {
         folder
             .run(&format!("tonemap a.exr -o {operator}.png -o {operator}.exr --operator {operator}"))
             .expect(0);
@@ -103,7 +104,46 @@ fn tonemapping() {
     };
     assert!(sum("dark.exr") < 0.5 * sum("plain.exr"));
     folder.run("tonemap a.exr -o dithered.png --dither").expect(0);
-    folder.run("tonemap a.exr -o key.png --operator reinhard --key 0.3 --white 2").expect(0);
+    folder.run("tonemap a.exr -o key.exr --operator reinhard --key 0.3 --white 2").expect(0);
+    folder.run("tonemap a.exr -o colon.exr --operator reinhard:key=0.3,white=2").expect(0);
+    assert_eq!(folder.image("key.exr").rgb_pixels(), folder.image("colon.exr").rgb_pixels());
+    folder.run("tonemap a.exr -o auto.exr --exposure auto").expect(0);
+    assert!(sum("auto.exr") > 0.0 && sum("auto.exr") != sum("plain.exr"));
+    for (wrong, says) in [
+        ("--operator rheinhard", "there are clamp"),
+        ("--operator reinhard:kye=1", "has no parameter 'kye'"),
+        ("--operator bilateral:space=-1", "must be above 0"),
+        ("--operator agx:x", "key=value"),
+        ("--exposure bright", "stops"),
+        ("--white-balance 12", "kelvin"),
+        ("--white-balance 0.9,0.9", "chromaticity"),
+    ] {
+        folder.run(&format!("tonemap a.exr -o no.png {wrong}")).expect(2).says(says);
+    }
+    assert!(!folder.files().iter().any(|file| file.contains("no.png")));
+}
+
+/// Light of a colour temperature becomes grey where that is taken for white, and stays as it is where that is the display's.
+#[test]
+fn white_is_balanced() {
+    let folder = Folder::with_scene(ROOM);
+    folder.render("a", "--spp 1");
+    let ratios = |options: &str| {
+        folder.run(&format!("tonemap a.exr -o b.exr {options}")).expect(0);
+        let pixels = folder.image("b.exr").rgb_pixels().expect("colour");
+        let sums = pixels
+            .iter()
+            .fold([0.0_f64; 3], |sums, rgb| std::array::from_fn(|i| sums[i] + f64::from(rgb[i])));
+        [sums[0] / sums[1], sums[2] / sums[1]]
+    };
+    let plain = ratios("--operator maximum");
+    let same = ratios("--operator maximum --white-balance 6504");
+    assert!(
+        (same[0] / plain[0] - 1.0).abs() < 0.01 && (same[1] / plain[1] - 1.0).abs() < 0.01,
+        "{plain:?} {same:?}"
+    );
+    let warm = ratios("--operator maximum --white-balance 3000");
+    assert!(warm[0] < plain[0] && warm[1] > plain[1], "{plain:?} {warm:?}");
 }
 
 /// SPEC SPD-3: inks leave the colour of the picture.

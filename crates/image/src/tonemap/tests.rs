@@ -1,15 +1,30 @@
 use super::{
-    Dither, Operator, Quantization, Reinhard, apply, bayer_8x8, log_average_luminance, mean_luminance, to_u8,
+    Bilateral, DisplayCurve, Dither, Gradient, HistogramAdjustment, Logarithmic, Operator, Quantization,
+    Reinhard, ReinhardLocal, apply, automatic_exposure, log_average_luminance, mean_luminance, to_u8,
 };
 use crate::{Encoding, Image, luminance, srgb_decode};
 
-const OPERATORS: [Operator; 5] = [
+const OPERATORS: [Operator; 6] = [
     Operator::Clamp,
     Operator::DivideByMaximum,
     Operator::Exponential,
     Operator::Reinhard(Reinhard { key: 0.18, delta: 1e-5, white: None }),
     Operator::Reinhard(Reinhard { key: 0.36, delta: 1e-6, white: Some(4.0) }),
+    Operator::Logarithmic(Logarithmic { bias: 0.85, display: 100.0 }),
 ];
+
+/// Operators that change colours or are not monotone over all pictures.
+fn others() -> [Operator; 7] {
+    [
+        Operator::Display(DisplayCurve::Filmic),
+        Operator::Display(DisplayCurve::Aces),
+        Operator::Display(DisplayCurve::Agx),
+        Operator::Histogram(HistogramAdjustment::default()),
+        Operator::ReinhardLocal(ReinhardLocal::default()),
+        Operator::Bilateral(Bilateral::default()),
+        Operator::Gradient(Gradient::default()),
+    ]
+}
 
 /// Gray ramp over ten powers of ten with a black pixel at its start.
 fn ramp() -> Image {
@@ -184,11 +199,187 @@ fn dithering_keeps_the_mean() {
     assert!((mean(Dither::Hashed(1)) - 100.3).abs() < 0.036);
 }
 
-/// The Bayer matrix holds each threshold once.
+/// A picture of ten powers of ten in all directions, with texture.
+fn scene() -> Image {
+    Image::from_fn(160, 120, |x, y| {
+        let l = 10_f32
+            .powf((x as f32 / 16.0 - 5.0) * 0.5 + 0.05 * ((x * 7 + y * 13) % 5) as f32 + y as f32 / 120.0);
+        [l, 0.8 * l, 0.5 * l]
+    })
+}
+
+/// Whatever the operator, a display gets finite numbers from 0 on, whatever the picture holds, and white is not far above 1.
 #[test]
-fn bayer_is_a_permutation() {
-    let mut entries: Vec<usize> = (0..64).map(|i| bayer_8x8(i % 8, i / 8)).collect();
-    assert_eq!(entries[..2], [0, 32]);
-    entries.sort_unstable();
-    assert!(entries.iter().copied().eq(0..64));
+fn all_operators_are_tame() {
+    let odd = Image::from_fn(9, 7, |x, y| match (x, y) {
+        (0, 0) => [f32::NAN, 1.0, 1.0],
+        (1, 0) => [f32::INFINITY, 1.0, 0.0],
+        (2, 0) => [-1.0, 0.5, 0.0],
+        (_, 1) => [0.0; 3],
+        (_, 2) => [1e30; 3],
+        (_, 3) => [1e-30; 3],
+        _ => [0.3, 0.2, 0.7],
+    });
+    let dark = Image::from_fn(5, 4, |_, _| [0.0; 3]);
+    let one = Image::from_fn(1, 1, |_, _| [3.0, 2.0, 1.0]);
+    let flat = Image::from_fn(70, 40, |_, _| [0.4; 3]);
+    let line = Image::from_fn(200, 1, |x, _| [x as f32; 3]);
+    for operator in OPERATORS.into_iter().chain(others()) {
+        for image in [&odd, &dark, &one, &flat, &line, &scene(), &Image::new(0, 0)] {
+            let shown = apply(image, operator, 0.0).rgb_pixels().unwrap_or_default();
+            for pixel in &shown {
+                let is_tame = pixel.iter().all(|value| value.is_finite() && *value >= 0.0);
+                assert!(is_tame && luminance(*pixel) <= 2.0, "{operator:?}: {pixel:?}");
+            }
+            assert_eq!(shown.len(), image.rgb_pixels().unwrap_or_default().len());
+        }
+        assert!(mapped(&dark, operator, 0.0).iter().all(|pixel| luminance(*pixel) < 1e-3), "{operator:?}");
+        assert_eq!(mapped(&odd, operator, 0.0)[0], [0.0; 3], "{operator:?} shows NaN");
+    }
+}
+
+/// Equal pixels of a flat picture stay equal, also where operators look around.
+#[test]
+fn flat_pictures_stay_flat() {
+    let flat = Image::from_fn(90, 50, |_, _| [0.6, 0.4, 0.2]);
+    for operator in OPERATORS.into_iter().chain(others()) {
+        let shown = mapped(&flat, operator, 0.0);
+        let first = luminance(shown[0]);
+        assert!(shown.iter().all(|pixel| (luminance(*pixel) - first).abs() < 1e-4 * first), "{operator:?}");
+    }
+    let global = mapped(&flat, Operator::Reinhard(Reinhard { delta: 0.0, ..Reinhard::default() }), 0.0);
+    let local = mapped(&flat, Operator::ReinhardLocal(ReinhardLocal::default()), 0.0);
+    assert!((global[0][0] - local[0][0]).abs() < 1e-5, "{global:?} {local:?}");
+}
+
+/// Curves of displays never show more light darker, keep grey grey, show black as black and bright light as white.
+#[test]
+fn display_curves_are_monotone() {
+    for operator in &others()[..3] {
+        let ramp = Image::from_fn(300, 1, |x, _| [10_f32.powf(x as f32 / 50.0 - 4.0); 3]);
+        let shown = mapped(&ramp, *operator, 0.0);
+        assert!(shown.windows(2).all(|pair| pair[1][1] >= pair[0][1] - 1e-4), "{operator:?}");
+        assert!(shown[0][1] < 0.005 && shown[299][1] > 0.9, "{operator:?} {:?} {:?}", shown[0], shown[299]);
+        let grey = |pixel: &[f32; 3]| (pixel[0] - pixel[1]).abs().max((pixel[2] - pixel[1]).abs());
+        assert!(shown.iter().all(|pixel| grey(pixel) < 0.01), "{operator:?}");
+        let middle = mapped(&Image::from_fn(1, 1, |_, _| [0.18; 3]), *operator, 0.0)[0][1];
+        assert!((0.08..0.4).contains(&middle), "{operator:?} shows middle grey as {middle}");
+    }
+}
+
+/// The largest luminance is the display's white, and the log-average lies where the formula puts it (Drago et al. (4)).
+#[test]
+fn logarithm_of_known_values() {
+    let image = Image::from_fn(3, 1, |x, _| [[0.01, 1.0, 100.0][x]; 3]);
+    let shown = mapped(&image, Operator::Logarithmic(Logarithmic::default()), 0.0);
+    assert!((shown[2][0] - 1.0).abs() < 1e-5, "{shown:?}");
+    // L_avg = 1: ln 2 / ln(2 + 8 (1/100)^(ln 0.85 / ln 0.5)) / log10(101).
+    let expected =
+        2.0_f64.ln() / (2.0 + 8.0 * 0.01_f64.powf(0.85_f64.ln() / 0.5_f64.ln())).ln() / 101_f64.log10();
+    assert!((f64::from(shown[1][0]) - expected).abs() < 1e-5, "{shown:?} {expected}");
+}
+
+/// Decades by which the displayed step exceeds its plateaus, over the height of the step, on both sides.
+fn overshoot(operator: Operator, decades: f32) -> f32 {
+    let (width, height) = (400, 240);
+    let image =
+        Image::from_fn(width, height, |x, _| [if x < width / 2 { 1.0 } else { 10_f32.powf(decades) }; 3]);
+    let shown = mapped(&image, operator, 0.0);
+    let row: Vec<f32> = (0..width).map(|x| shown[height / 2 * width + x][1].log10()).collect();
+    let (low, high) = (row[0], row[width - 1]);
+    let (least, most) = row.iter().fold((low, high), |(a, b), v| (a.min(*v), b.max(*v)));
+    assert!(high > low, "{operator:?} shows no step");
+    (low - least).max(most - high) / decades
+}
+
+/// An edge has no halo: at most 2 % of the step for the bilateral operator, 5 % for the other local ones.
+#[test]
+fn edges_have_no_halos() {
+    for decades in [1.0, 2.0, 3.5] {
+        let bilateral = overshoot(Operator::Bilateral(Bilateral::default()), decades);
+        assert!(bilateral < 0.02, "bilateral: {bilateral} of {decades} decades");
+        for operator in
+            [Operator::ReinhardLocal(ReinhardLocal::default()), Operator::Gradient(Gradient::default())]
+        {
+            let local = overshoot(operator, decades);
+            assert!(local < 0.05, "{operator:?}: {local} of {decades} decades");
+        }
+    }
+}
+
+/// Local operators keep the contrast of texture that the global curve flattens, on both sides of a large step.
+#[test]
+fn texture_survives_local_operators() {
+    let texture = |x: usize, y: usize| if (x / 2 + y / 2).is_multiple_of(2) { 1.0 } else { 1.3 };
+    let image = Image::from_fn(256, 128, |x, y| [texture(x, y) * if x < 128 { 0.05 } else { 200.0 }; 3]);
+    let contrast = |operator: Operator, x: usize| {
+        let shown = mapped(&image, operator, 0.0);
+        let at = |x: usize| shown[64 * 256 + x][1];
+        at(x + 2).max(at(x)) / at(x + 2).min(at(x))
+    };
+    let world = 1.3;
+    let global = contrast(Operator::Reinhard(Reinhard::default()), 192);
+    for operator in
+        [Operator::ReinhardLocal(ReinhardLocal::default()), Operator::Bilateral(Bilateral::default())]
+    {
+        for x in [60, 192] {
+            let local = contrast(operator, x);
+            assert!(
+                local > global && local > 1.0 + 0.4 * (world - 1.0),
+                "{operator:?} {local} against {global}"
+            );
+        }
+    }
+    let gradient = contrast(Operator::Gradient(Gradient::default()), 192);
+    assert!(gradient > global, "{gradient} against {global}");
+}
+
+/// The gradient operator keeps the sign of every steep gradient of a smooth picture.
+#[test]
+fn gradients_keep_their_signs() {
+    let image = Image::from_fn(128, 96, |x, y| {
+        [10_f32.powf((x as f32 * 0.1).sin() * 2.0 + (y as f32 * 0.07).cos()); 3]
+    });
+    let shown = mapped(&image, Operator::Gradient(Gradient { saturation: 1.0, ..Gradient::default() }), 0.0);
+    let world = image.rgb_pixels().expect("colour");
+    let (mut n, mut n_kept) = (0, 0);
+    for y in 0..96 {
+        for x in 0..127 {
+            let i = y * 128 + x;
+            let (before, after) = (world[i + 1][1] / world[i][1], shown[i + 1][1] / shown[i][1]);
+            // What is shown as white has no gradient.
+            if before.ln().abs() > 0.05 && shown[i][1].max(shown[i + 1][1]) < 0.999 {
+                n += 1;
+                n_kept += i32::from((before > 1.0) == (after > 1.0));
+            }
+        }
+    }
+    assert!(n > 5000 && n_kept >= n - n / 200, "{n_kept} of {n}");
+}
+
+/// Histogram adjustment is monotone, never shows more contrast than the world, and shows a world of little contrast as it is.
+#[test]
+fn histogram_adjustment_exaggerates_nothing() {
+    let operator = Operator::Histogram(HistogramAdjustment::default());
+    let image = Image::from_fn(256, 64, |x, y| {
+        [10_f32.powf((x as f32 / 256.0).powi(3) * 5.0 + 0.001 * (y % 2) as f32); 3]
+    });
+    let shown = mapped(&image, operator, 0.0);
+    let world = image.rgb_pixels().expect("colour");
+    let black = 0.01; // of the display, which adds to all that it shows
+    for x in 0..255 {
+        let seen = (shown[x + 1][1] + black) / (shown[x][1] + black);
+        let there = world[x + 1][1] / world[x][1];
+        assert!(seen >= 0.9999, "at {x}");
+        // The ceiling leaves 2.5 % of the counts above it.
+        assert!(seen.ln() <= 1.1 * there.ln() + 0.01, "at {x}: {seen} of {there}");
+    }
+    assert!(shown[0][1] < 0.02 && shown[255][1] > 0.9, "{} {}", shown[0][1], shown[255][1]);
+}
+
+#[test]
+fn automatic_exposure_gives_the_key() {
+    let image = Image::from_fn(2, 1, |x, _| [[4.0, 16.0][x]; 3]);
+    assert!((automatic_exposure(&image, 0.18) - (0.18_f32 / 8.0).log2()).abs() < 1e-4);
+    assert_eq!(automatic_exposure(&Image::from_fn(2, 1, |_, _| [0.0; 3]), 0.18), 0.0);
 }
