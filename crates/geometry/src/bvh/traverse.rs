@@ -6,7 +6,7 @@
 
 use super::lanes::{Lanes, Stack};
 use super::node::{self, EMPTY, INNER, ITEMS, Node, TRIANGLES, leaf_range};
-use super::triangle_block::Hits;
+use super::triangle_block::{Hits, TriangleBlock};
 use super::{Bvh, INSTANCE, TraversalRay, Verdict, Visitor, WideRay};
 use etendue_math::Ray;
 
@@ -71,9 +71,11 @@ pub(super) fn traverse<'a, L: Lanes, V: Visitor<'a>>(
     t_max: f32,
     visitor: &mut V,
 ) {
-    let Some(world_ray) = prepared(world, &ray.into()) else { return };
+    // Borrowed where it lies: it is large.
+    let world_ray = prepared(world, &ray.into());
+    let Some(world_ray) = &world_ray else { return };
     let mut instance_ray;
-    let (mut bvh, mut ray) = (world, &world_ray);
+    let (mut bvh, mut ray) = (world, world_ray);
     let mut end = t_max;
     let (mut stack, mut len) = (L::Stack::new(), 0);
     // Entries from here on belong to the instance, or to the world where there are none below.
@@ -118,7 +120,7 @@ pub(super) fn traverse<'a, L: Lanes, V: Visitor<'a>>(
                     return;
                 }
                 visitor.leave();
-                (bvh, ray, floor) = (world, &world_ray, 0);
+                (bvh, ray, floor) = (world, world_ray, 0);
             }
             len -= 1;
             let entry = stack.read(len);
@@ -219,22 +221,37 @@ fn visit_triangles<'a, L: Lanes>(
     end: &mut f32,
     visitor: &mut impl Visitor<'a>,
 ) -> bool {
-    let mut hits = Hits::NONE;
     for block in lanes.blocks(bvh, leaf) {
         visitor.note_block(|| block.n_triangles());
-        let mut mask = block.intersect(lanes, ray, *end, &mut hits);
-        while mask != 0 {
-            let lane = mask.trailing_zeros() as usize & 7;
-            mask &= mask - 1;
-            let t = hits.t[lane];
-            if t > *end {
-                continue;
-            }
-            match visitor.triangle(block.reference(lane), t, block.weights(lane, &hits)) {
-                Verdict::Pass => {}
-                Verdict::Shorten(t) => *end = t,
-                Verdict::Stop => return false,
-            }
+        let t_max = *end;
+        let found = |mask, hits: &Hits| visit_hits(block, mask, hits, end, visitor);
+        if block.intersect(lanes, ray, t_max, found) == Some(false) {
+            return false;
+        }
+    }
+    true
+}
+
+/// Shows the triangles of a block that are hit; false to stop.
+#[inline(always)]
+fn visit_hits<'a>(
+    block: &TriangleBlock,
+    mut mask: u32,
+    hits: &Hits,
+    end: &mut f32,
+    visitor: &mut impl Visitor<'a>,
+) -> bool {
+    while mask != 0 {
+        let lane = mask.trailing_zeros() as usize & 7;
+        mask &= mask - 1;
+        let t = hits.t[lane];
+        if t > *end {
+            continue;
+        }
+        match visitor.triangle(block.reference(lane), t, block.weights(lane, hits)) {
+            Verdict::Pass => {}
+            Verdict::Shorten(t) => *end = t,
+            Verdict::Stop => return false,
         }
     }
     true

@@ -92,22 +92,22 @@ impl TriangleBlock {
         PrimitiveRef { geometry: self.geometry[lane & 3], primitive: self.primitive[lane & 7] }
     }
 
-    /// Which triangles the ray hits with t in (0, `t_max`], one bit each, and where.
+    /// Tells which triangles the ray hits with t in (0, `t_max`], one bit each, and where, if there are any.
     #[inline(always)]
-    pub(super) fn intersect<L: Lanes>(
+    pub(super) fn intersect<L: Lanes, T>(
         &self,
         lanes: L,
         ray: &TraversalRay,
         t_max: f32,
-        hits: &mut Hits,
-    ) -> u32 {
+        found: impl FnOnce(u32, &Hits) -> T,
+    ) -> Option<T> {
         let a = shear_rows(lanes, &self.shared, ray);
         let b = shear_rows(lanes, &self.apart, ray);
         let c = [lanes.swap_halves(a[0]), lanes.swap_halves(a[1]), lanes.swap_halves(a[2])];
         let mut edges = [edge_rows(lanes, b, c), edge_rows(lanes, c, a), edge_rows(lanes, a, b)];
         let mut mask = have_one_sign(lanes, edges);
         if mask == 0 {
-            return 0;
+            return None;
         }
         let sizes = [lanes.abs(edges[0]), lanes.abs(edges[1]), lanes.abs(edges[2])];
         let zeros = lanes.at_most(lanes.min(lanes.min(sizes[0], sizes[1]), sizes[2]), lanes.splat(0.0));
@@ -123,7 +123,7 @@ impl TriangleBlock {
         let highest = lanes.max(lanes.max(heights[0], heights[1]), heights[2]);
         mask &= !lanes.at_most(highest, lanes.splat(0.0));
         if mask == 0 {
-            return 0;
+            return None;
         }
         let inverse = lanes.div(lanes.splat(1.0), ordered_sum(lanes, edges));
         let products = [
@@ -135,13 +135,14 @@ impl TriangleBlock {
         // NaN, where all edge functions are 0, is lost here.
         mask &= lanes.at_most(t, lanes.splat(t_max));
         if mask == 0 {
-            return 0;
+            return None;
         }
         let lowest = lanes.min(lanes.min(heights[0], heights[1]), heights[2]);
-        let edges_stored = [lanes.store(edges[0]), lanes.store(edges[1]), lanes.store(edges[2])];
-        hits.t = lanes.store(t);
-        hits.edges = edges_stored;
-        hits.inverse = lanes.store(inverse);
+        let mut hits = Hits {
+            t: lanes.store(t),
+            edges: [lanes.store(edges[0]), lanes.store(edges[1]), lanes.store(edges[2])],
+            inverse: lanes.store(inverse),
+        };
         let mixed = mask & lanes.at_most(lowest, lanes.splat(0.0));
         if mixed != 0 {
             let highest = largest(lanes, heights);
@@ -151,8 +152,11 @@ impl TriangleBlock {
                 self.decide_t(unsure, ray, &mut hits.t);
             }
             mask &= !lanes.at_most(lanes.load(&hits.t), lanes.splat(0.0));
+            if mask == 0 {
+                return None;
+            }
         }
-        mask
+        Some(found(mask, &hits))
     }
 
     /// The weights of the second and third vertex.
@@ -172,8 +176,13 @@ impl TriangleBlock {
     /// Corners of a triangle in the order of the mesh.
     #[inline(always)]
     fn corners(&self, lane: usize) -> [[f32; 3]; 3] {
-        let [i, j, k] = self.mesh_order(lane);
-        [self.corner(lane, i), self.corner(lane, j), self.corner(lane, k)]
+        // As `mesh_order` has it, but without addresses to compute.
+        let (p, q, r) = (self.corner(lane, 0), self.corner(lane, 1), self.corner(lane, 2));
+        match self.first_corner[lane] {
+            1 => [r, p, q],
+            2 => [q, r, p],
+            _ => [p, q, r],
+        }
     }
 
     #[inline(always)]
@@ -205,7 +214,7 @@ impl TriangleBlock {
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize & 7;
             mask &= mask - 1;
-            t[lane] = t_in_double(ray, &self.corners(lane));
+            t[lane] = t_in_double(ray, self.corners(lane));
         }
     }
 }
@@ -220,10 +229,6 @@ pub(super) struct Hits {
     inverse: [f32; 8],
 }
 
-impl Hits {
-    pub(super) const NONE: Self = Self { t: [0.0; 8], edges: [[0.0; 8]; 3], inverse: [0.0; 8] };
-}
-
 /// The same test on a single triangle.
 pub(super) fn intersect(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> Option<TriangleHit> {
     // Most triangles end here: the same edge functions as in the block, of which two have opposite signs.
@@ -234,9 +239,7 @@ pub(super) fn intersect(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> Option<T
     }
     let mut block = TriangleBlock::EMPTY;
     block.set_triangle(0, 0, corners, 0);
-    let mut hits = Hits::NONE;
-    let mask = block.intersect(Portable, ray, f32::MAX, &mut hits);
-    (mask != 0).then(|| (hits.t[0], block.weights(0, &hits)))
+    block.intersect(Portable, ray, f32::MAX, |_, hits| (hits.t[0], block.weights(0, hits)))
 }
 
 /// Eight points seen from the ray, which runs along z.
@@ -288,18 +291,22 @@ fn shear(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> [[f32; 3]; 3] {
 
 /// Where the ray meets the plane of a triangle; 0 if it does not.
 #[inline(always)]
-fn t_in_double(ray: &TraversalRay, corners: &[[f32; 3]; 3]) -> f32 {
-    let [a, b, c] = corners.map(|p| DVec3::from_array(p.map(f64::from)));
+fn t_in_double(ray: &TraversalRay, [a, b, c]: [[f32; 3]; 3]) -> f32 {
+    let (a, b, c) = (double(a), double(b), double(c));
     let n = (b - a).cross(c - a);
-    let slope = n.dot(double(&ray.direction));
-    let height = n.dot(a - double(&ray.origin));
+    let slope = n.dot(double(xyz(ray.direction)));
+    let height = n.dot(a - double(xyz(ray.origin)));
     let is_ahead = (height > 0.0 && slope > 0.0) || (height < 0.0 && slope < 0.0);
     // A tiny value must not become 0.
     if is_ahead { ((height / slope) as f32).max(f32::MIN_POSITIVE) } else { 0.0 }
 }
 
-const fn double([x, y, z, _]: &[f32; 4]) -> DVec3 {
-    DVec3::new(*x as f64, *y as f64, *z as f64)
+const fn xyz([x, y, z, _]: [f32; 4]) -> [f32; 3] {
+    [x, y, z]
+}
+
+const fn double([x, y, z]: [f32; 3]) -> DVec3 {
+    DVec3::new(x as f64, y as f64, z as f64)
 }
 
 /// Edge functions in double precision, where products of single-precision numbers are exact.
