@@ -199,6 +199,7 @@ impl BsdfKind {
     #[inline]
     fn eval_and_pdf(&self, wo: Vector3, wi: Vector3) -> (Sampled, f32) {
         match self {
+            Self::Diffuse(bsdf) => (bsdf.eval(wo, wi, Lobes::ALL), bsdf.pdf(wo, wi, Lobes::ALL)),
             Self::Conductor(bsdf) => bsdf.eval_and_pdf(wo, wi, Lobes::ALL),
             Self::Hair(bsdf) => bsdf.eval_and_pdf(wo, wi, Lobes::ALL),
             _ => (self.eval(wo, wi, TransportMode::Radiance, Lobes::ALL), self.pdf(wo, wi, Lobes::ALL)),
