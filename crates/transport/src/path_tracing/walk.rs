@@ -68,11 +68,10 @@ impl<'s> Walk<'s> {
 
     /// Follows the path to its end, and returns what it brings.
     pub(super) fn follow(mut self, tracer: &Tracer<'_>, path: &mut CameraPath<'_, '_>) -> Sampled {
-        while let Some((surface, bsdf)) = self.arrive(tracer, path) {
-            if !self.visit(tracer, &surface, &bsdf, path) {
-                break;
-            }
-        }
+        let visit = |walk: &mut Self, surface: &Surface, bsdf: &Bsdf, path: &mut CameraPath<'_, '_>| {
+            walk.visit(tracer, surface, bsdf, path)
+        };
+        while self.arrive_and(tracer, path, visit) == Some(true) {}
         self.radiance
     }
 
@@ -116,6 +115,17 @@ impl<'s> Walk<'s> {
         tracer: &Tracer<'_>,
         path: &mut CameraPath<'_, '_>,
     ) -> Option<(Surface, Bsdf)> {
+        self.arrive_and(tracer, path, |_, surface, bsdf, _| (*surface, *bsdf))
+    }
+
+    /// [Arrives](Self::arrive), and does something with the surface where it lies: it is large to hand on.
+    #[inline(always)]
+    fn arrive_and<T>(
+        &mut self,
+        tracer: &Tracer<'_>,
+        path: &mut CameraPath<'_, '_>,
+        work: impl FnOnce(&mut Self, &Surface, &Bsdf, &mut CameraPath<'_, '_>) -> T,
+    ) -> Option<T> {
         let scene = tracer.scene;
         loop {
             let hit = tracer.intersect(&self.ray);
@@ -140,7 +150,8 @@ impl<'s> Walk<'s> {
             if is_last {
                 return None;
             }
-            let Some(mut bsdf) = scene.bsdf(&surface, path.lambda) else {
+            let mut bsdf = scene.bsdf(&surface, path.lambda);
+            let Some(bsdf) = &mut bsdf else {
                 // Light passes as if the surface were not there.
                 self.ray = surface.spawn_ray(self.ray.direction);
                 continue;
@@ -148,7 +159,7 @@ impl<'s> Walk<'s> {
             if self.depth == 0
                 && let Some(features) = &mut path.features
             {
-                **features = describe(scene, &surface, &bsdf, path.lambda);
+                **features = describe(scene, &surface, bsdf, path.lambda);
             }
             if self.depth == self.settings.max_depth {
                 return None;
@@ -156,7 +167,7 @@ impl<'s> Walk<'s> {
             if self.settings.regularize && self.has_scattered_widely {
                 bsdf.regularize();
             }
-            return Some((surface, bsdf));
+            return Some(work(self, &surface, bsdf, path));
         }
     }
 
