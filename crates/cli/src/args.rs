@@ -42,6 +42,8 @@ pub(crate) enum Command {
     Bench(BenchArguments),
     /// Write a scene of the notebook with its meshes; `list scenes` shows all
     Scene(SceneArguments),
+    /// Look at the photons of a scene: a picture of them, a file of points, where those at a point come from
+    Photons(PhotonsArguments),
 }
 
 /// Arguments of `render`.
@@ -117,6 +119,56 @@ pub(crate) enum WavelengthArgument {
     Single,
     /// Red, green and blue of linear sRGB in place of wavelengths, as renderers without spectra compute
     Bands,
+}
+
+/// Arguments of `photons`.
+#[derive(Args, Debug)]
+pub(crate) struct PhotonsArguments {
+    /// Scene file
+    pub(crate) scene: PathBuf,
+    /// Output: an image shows photons as dots, .ply holds them as points; with --at, .svg and .csv tell where they come from; may repeat
+    #[arg(short, long = "output", value_name = "OUT")]
+    pub(crate) outputs: Vec<PathBuf>,
+    /// Photons that leave the lights
+    #[arg(long, value_name = "N", default_value = "100000", value_parser = clap::value_parser!(u64).range(1..=100_000_000), allow_negative_numbers = true)]
+    pub(crate) photons: u64,
+    /// Which of them are kept
+    #[arg(long, value_enum, default_value = "all")]
+    pub(crate) kind: PhotonKindArgument,
+    /// Keep those nearest to this point alone
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_triple, allow_hyphen_values = true)]
+    pub(crate) at: Option<[f32; 3]>,
+    /// Keep those that arrive on the side of this normal alone [default: both sides, seen from that of the nearest]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_triple, allow_hyphen_values = true, requires = "at")]
+    pub(crate) normal: Option<[f32; 3]>,
+    /// How many to keep at the point
+    #[arg(long, value_name = "K", default_value = "50", value_parser = clap::value_parser!(u32).range(1..), requires = "at", allow_negative_numbers = true)]
+    pub(crate) nearest: u32,
+    /// Radius of a dot in pixels
+    #[arg(long, value_name = "PIXELS", default_value = "0.7", value_parser = parse_dot_radius, allow_negative_numbers = true)]
+    pub(crate) radius: f32,
+    /// Photons around a dot that tell how bright it is; 0: all dots alike
+    #[arg(long, value_name = "K", default_value = "50", value_parser = clap::value_parser!(u32).range(0..=100_000), allow_negative_numbers = true)]
+    pub(crate) density: u32,
+    /// Random seed
+    #[arg(long, value_name = "N", default_value = "0", allow_negative_numbers = true)]
+    pub(crate) seed: u64,
+    /// Resolution in place of the film's
+    #[arg(long, value_name = "WxH", value_parser = parse_resolution, allow_hyphen_values = true)]
+    pub(crate) resolution: Option<[i32; 2]>,
+}
+
+/// Which photons.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PhotonKindArgument {
+    /// All on surfaces that scatter widely
+    All,
+    /// Straight from a light
+    Direct,
+    /// Through mirrors and glass alone
+    Caustic,
+    /// All others
+    Indirect,
 }
 
 /// Arguments of `info`.
@@ -295,6 +347,16 @@ pub(crate) enum StudyName {
     Accelerators,
     /// Error of the ways to find the light, against the size of the lamp
     LightSize,
+    /// Error of the photons' radiance estimate, against their number
+    EstimateConsistency,
+    /// Filters of the radiance estimate at the edge of a caustic
+    EstimateEdge,
+    /// Volumes and hulls of the radiance estimate beside walls
+    EstimateWalls,
+    /// Photons counted by triangle against their radiance estimate, on a handle of small triangles
+    EstimateHistogram,
+    /// Photons as small lights against their radiance estimate, in a box
+    Gathering,
 }
 
 /// Arguments of `brdf`.
@@ -428,6 +490,19 @@ fn parse_resolution(text: &str) -> Result<[i32; 2], String> {
     let (width, height) = text.split_once('x').ok_or_else(malformed)?;
     let resolution = [width.parse().map_err(|_| malformed())?, height.parse().map_err(|_| malformed())?];
     if resolution.iter().any(|r| *r < 1) { Err(malformed()) } else { Ok(resolution) }
+}
+
+fn parse_triple(text: &str) -> Result<[f32; 3], String> {
+    let numbers: Option<Vec<f32>> =
+        text.split(',').map(|number| number.trim().parse().ok().filter(|v: &f32| v.is_finite())).collect();
+    numbers
+        .and_then(|n| <[f32; 3]>::try_from(n).ok())
+        .ok_or_else(|| "write three numbers, such as 0,1.5,-2".to_owned())
+}
+
+fn parse_dot_radius(text: &str) -> Result<f32, String> {
+    let radius = text.parse::<f32>().ok().filter(|radius| (0.05..=100.0).contains(radius));
+    radius.ok_or_else(|| "a radius is a number of pixels from 0.05 to 100".to_owned())
 }
 
 fn parse_crop(text: &str) -> Result<[f32; 4], String> {

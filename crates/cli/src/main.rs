@@ -15,6 +15,7 @@ mod load;
 mod merge;
 mod metadata;
 mod outputs;
+mod photons;
 mod progress;
 mod render;
 mod report;
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         Command::Brdf(arguments) => brdf::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Scene(arguments) => scene::run(&arguments),
+        Command::Photons(arguments) => photons::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -3,6 +3,10 @@
 use std::fs;
 use std::path::Path;
 
+use etendue::lab::estimates::{
+    ConsistencySettings, CurveStudy, EdgeSettings, GatheringSettings, HandleSettings, WallSettings,
+    consistency, edge, gathering, handle, walls,
+};
 use etendue::lab::{
     AcceleratorSettings, ConvergenceSettings, LightSizeSettings, PixelSettings, SceneSizeSettings,
     accelerators, convergence, light_size, pixel, scene_size,
@@ -58,7 +62,32 @@ fn measure(arguments: &StudyArguments) -> Result<(&'static str, String, String, 
             let study = light_size(&settings, &mut note);
             ("light-size", study.csv(), study.svg(), study.summary())
         }
+        StudyName::EstimateConsistency => {
+            let settings =
+                if quick { ConsistencySettings::quick(seed) } else { ConsistencySettings::full(seed) };
+            curves("estimate-consistency", consistency(&settings))
+        }
+        StudyName::EstimateEdge => {
+            let settings = if quick { EdgeSettings::quick(seed) } else { EdgeSettings::full(seed) };
+            curves("estimate-edge", edge(&settings))
+        }
+        StudyName::EstimateWalls => {
+            let settings = if quick { WallSettings::quick(seed) } else { WallSettings::full(seed) };
+            curves("estimate-walls", walls(&settings))
+        }
+        StudyName::EstimateHistogram => {
+            let settings = if quick { HandleSettings::quick(seed) } else { HandleSettings::full(seed) };
+            curves("estimate-histogram", handle(&settings))
+        }
+        StudyName::Gathering => {
+            let settings = if quick { GatheringSettings::quick(seed) } else { GatheringSettings::full(seed) };
+            curves("gathering", gathering(&settings, &mut note))
+        }
     })
+}
+
+fn curves(name: &'static str, study: CurveStudy) -> (&'static str, String, String, String) {
+    (name, study.csv(), study.svg(), study.summary)
 }
 
 /// Runs a study in one thread, whose processor time is then that of all the work.

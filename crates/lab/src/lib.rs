@@ -10,12 +10,14 @@ pub mod scenes;
 pub mod accelerators;
 pub mod brdf;
 pub mod convergence;
+pub mod estimates;
 pub mod light_size;
 pub mod pixel;
 pub mod scene_size;
 pub mod speed;
 
 pub mod generate;
+pub mod photons;
 
 pub mod fit;
 pub mod plot;

@@ -19,7 +19,7 @@ const SMALL: &[(&str, &[(&str, &str)])] = &[
     ("cognac", &[("cells", "16")]),
     ("cognac-closeup", &[("cells", "16")]),
     ("cognac-penumbra", &[("cells", "16")]),
-    ("incident", &[("samples", "4")]),
+    ("incident", &[("emitted", "20000")]),
 ];
 
 fn small(generator: &'static Generator) -> Files {

@@ -6,6 +6,7 @@
 //! photon maps, share [`emit`] and [`walk`].
 
 pub mod emit;
+pub mod estimate;
 pub mod map;
 pub mod switches;
 pub mod trail;
