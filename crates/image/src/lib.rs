@@ -7,6 +7,8 @@
 mod buffer;
 pub mod compare;
 mod encoding;
+pub mod exposures;
+mod plane;
 mod resample;
 mod texels;
 pub mod tonemap;

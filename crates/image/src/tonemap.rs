@@ -30,12 +30,12 @@ mod gradient;
 mod histogram;
 mod local;
 mod named;
-mod plane;
 mod poisson;
 mod quantize;
 
 use rayon::prelude::*;
 
+use crate::plane::Plane;
 use crate::{Image, luminance};
 
 pub use bilateral::Bilateral;
@@ -47,7 +47,6 @@ pub use named::{OPERATORS, OperatorSpec};
 pub use quantize::{Dither, Quantization, to_u8};
 
 use self::global::Curve;
-use self::plane::Plane;
 
 /// A tone mapping operator.
 #[derive(Copy, Clone, Debug, PartialEq, Default)]

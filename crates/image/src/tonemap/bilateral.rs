@@ -5,7 +5,7 @@
 //! The logarithm of luminance is smoothed within regions but not across edges; what that leaves out is detail. Only the
 //! smooth base is compressed, so that texture stays and edges have no halos.
 
-use super::plane::Plane;
+use crate::plane::Plane;
 
 /// Parameters of the bilateral operator.
 #[derive(Copy, Clone, Debug, PartialEq)]

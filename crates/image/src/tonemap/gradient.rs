@@ -4,8 +4,8 @@
 //! Steep gradients of the logarithm of luminance are weakened at every scale of a pyramid, weak ones strengthened a little;
 //! the picture whose gradients come nearest is the solution of a Poisson equation.
 
-use super::plane::Plane;
 use super::poisson;
+use crate::plane::Plane;
 
 /// Parameters of the gradient operator.
 #[derive(Copy, Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 //! Range Scenes"): common luminances get much of the display's range and rare ones little, but nowhere does the display show
 //! more contrast than the world.
 
-use super::plane::Plane;
+use crate::plane::Plane;
 
 /// Parameters of histogram adjustment.
 #[derive(Copy, Clone, Debug, PartialEq)]

@@ -9,7 +9,7 @@
 //! L_d     = L_s / (1 + V_1(s_m))
 //! ```
 
-use super::plane::Plane;
+use crate::plane::Plane;
 
 /// Parameters of the local photographic operator.
 #[derive(Copy, Clone, Debug, PartialEq)]

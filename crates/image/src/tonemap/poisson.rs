@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::plane::Plane;
+use crate::plane::Plane;
 
 /// Sweeps before and after the coarse correction.
 const SWEEPS: usize = 2;

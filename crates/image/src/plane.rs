@@ -4,42 +4,42 @@ use rayon::prelude::*;
 
 /// Rows of numbers, the top one first.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Plane {
-    pub(super) width: usize,
-    pub(super) height: usize,
-    pub(super) values: Vec<f32>,
+pub(crate) struct Plane {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) values: Vec<f32>,
 }
 
 impl Plane {
-    pub(super) fn new(width: usize, height: usize, values: Vec<f32>) -> Self {
+    pub(crate) fn new(width: usize, height: usize, values: Vec<f32>) -> Self {
         debug_assert_eq!(values.len(), width * height);
         Self { width, height, values }
     }
 
-    pub(super) fn zeros(width: usize, height: usize) -> Self {
+    pub(crate) fn zeros(width: usize, height: usize) -> Self {
         Self::new(width, height, vec![0.0; width * height])
     }
 
-    pub(super) fn row(&self, y: usize) -> &[f32] {
+    pub(crate) fn row(&self, y: usize) -> &[f32] {
         &self.values[y * self.width..(y + 1) * self.width]
     }
 
     #[cfg(test)]
-    pub(super) fn at(&self, x: usize, y: usize) -> f32 {
+    pub(crate) fn at(&self, x: usize, y: usize) -> f32 {
         self.values[y * self.width + x]
     }
 
-    pub(super) fn map(&self, f: impl Fn(f32) -> f32 + Sync) -> Self {
+    pub(crate) fn map(&self, f: impl Fn(f32) -> f32 + Sync) -> Self {
         Self::new(self.width, self.height, self.values.par_iter().map(|value| f(*value)).collect())
     }
 
-    pub(super) fn range(&self) -> (f32, f32) {
+    pub(crate) fn range(&self) -> (f32, f32) {
         let ends = (f32::INFINITY, f32::NEG_INFINITY);
         self.values.iter().fold(ends, |(low, high), value| (low.min(*value), high.max(*value)))
     }
 
     /// Each row made from its index, in parallel.
-    pub(super) fn from_rows(width: usize, height: usize, fill: impl Fn(usize, &mut [f32]) + Sync) -> Self {
+    pub(crate) fn from_rows(width: usize, height: usize, fill: impl Fn(usize, &mut [f32]) + Sync) -> Self {
         let mut plane = Self::zeros(width, height);
         if width > 0 {
             plane.values.par_chunks_mut(width).enumerate().for_each(|(y, row)| fill(y, row));
@@ -49,7 +49,7 @@ impl Plane {
 
     /// Convolution with a Gaussian of this standard deviation in pixels, cut at three of them; beyond the border the plane
     /// goes on as its border does.
-    pub(super) fn blurred(&self, sigma: f32) -> Self {
+    pub(crate) fn blurred(&self, sigma: f32) -> Self {
         let kernel = gaussian(sigma);
         self.blurred_along_columns(&kernel).blurred_along_rows(&kernel)
     }
@@ -88,7 +88,7 @@ impl Plane {
     }
 
     /// Half the size: each value is the mean of four, of fewer at odd borders.
-    pub(super) fn halved(&self) -> Self {
+    pub(crate) fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         Self::from_rows(width, height, |y, row| {
             let (a, b) = (self.row(2 * y), self.row((2 * y + 1).min(self.height - 1)));
@@ -100,7 +100,7 @@ impl Plane {
     }
 
     /// Values between the middles of this plane's pixels, for a plane of about twice the size, bilinear.
-    pub(super) fn doubled(&self, width: usize, height: usize) -> Self {
+    pub(crate) fn doubled(&self, width: usize, height: usize) -> Self {
         let place = |i: usize, n: usize| {
             let at = (i as f32 + 0.5) * 0.5 - 0.5;
             let low = at.max(0.0).floor() as usize;
