@@ -66,6 +66,16 @@ impl Geometry {
         self.structures.as_ref().map_or(Accelerator::Bvh, |structures| structures.accelerator)
     }
 
+    /// True if something is elsewhere at another time.
+    #[must_use]
+    pub fn is_moving(&self) -> bool {
+        let is_deforming = |entity: &Entity| match entity {
+            Entity::Traced(shape) => matches!(**shape, Traced::Moving(_)),
+            _ => false,
+        };
+        self.instances.iter().any(Instance::is_moving) || self.entities.iter().any(is_deforming)
+    }
+
     /// The same geometry, traced without the instructions that only some processors have. For tests and
     /// measurements: the hits are the same, bit for bit.
     #[must_use]

@@ -49,6 +49,11 @@ impl Instance {
         Self { group, maps: Maps::new(double::affine(&world_from_object.start)), motion }
     }
 
+    /// True if its place depends on time.
+    pub(crate) const fn is_moving(&self) -> bool {
+        self.motion.is_some()
+    }
+
     /// The box of the group at all times, with room for rounding; `None` if there is nothing to hit.
     pub(crate) fn world_bounds(&self, bounds: Bounds3) -> Option<Bounds3> {
         if bounds.is_empty() {

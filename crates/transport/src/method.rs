@@ -11,6 +11,7 @@ use crate::light_tracing::{LightSettings, LightTracer};
 use crate::lpe::PathExpressions;
 use crate::path_tracing::{PathSettings, PathTracer};
 use crate::whitted::{Whitted, WhittedSettings};
+use crate::photon::progressive::{Progressive, ProgressiveSettings};
 
 /// What documentation says of a method.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +58,20 @@ pub const INTEGRATORS: &[MethodSpec] = &[
         consistent: false,
         parameters: OcclusionSettings::PARAMETERS,
     },
+    MethodSpec {
+        name: "sppm",
+        doc: "stochastic progressive photon mapping: photons around visible points, with radii that shrink from pass to pass",
+        unbiased: false,
+        consistent: true,
+        parameters: ProgressiveSettings::PARAMETERS,
+    },
+    MethodSpec {
+        name: "ppm",
+        doc: "progressive photon mapping: the same with the same camera paths in all passes",
+        unbiased: false,
+        consistent: false,
+        parameters: ProgressiveSettings::PARAMETERS,
+    },
 ];
 
 /// Other names of methods.
@@ -79,9 +94,7 @@ const COMING: &[&str] = &[
     "pathmlt",
     "photonmap",
     "photons",
-    "ppm",
     "radiosity",
-    "sppm",
     "vcm",
 ];
 
@@ -121,6 +134,8 @@ pub fn method(entity: &Entity, expressions: PathExpressions) -> (Option<Box<dyn 
         "ao" => read_occlusion(&mut p, expressions),
         "whitted" => Box::new(Whitted::new(WhittedSettings::from_parameters(&mut p), expressions)),
         "light" => Box::new(LightTracer::new(LightSettings::from_parameters(&mut p), expressions)),
+        "ppm" => read_progressive(&mut p, expressions, true),
+        "sppm" => read_progressive(&mut p, expressions, false),
         _ => read_path(&mut p, expressions, is_coming),
     };
     p.finish();
@@ -174,4 +189,13 @@ fn read_occlusion(p: &mut Parameters<'_, '_>, expressions: PathExpressions) -> B
         p.diagnostics().warning(span, message);
     }
     Box::new(AmbientOcclusion::new(settings, expressions))
+}
+
+fn read_progressive(
+    p: &mut Parameters<'_, '_>,
+    expressions: PathExpressions,
+    has_fixed_points: bool,
+) -> Box<dyn Integrator> {
+    let settings = ProgressiveSettings::from_parameters(p);
+    Box::new(Progressive::new(ProgressiveSettings { has_fixed_points, ..settings }, expressions))
 }

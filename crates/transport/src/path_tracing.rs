@@ -11,7 +11,7 @@ mod artist;
 mod mirrored;
 mod reuse;
 mod settings;
-mod walk;
+pub(crate) mod walk;
 
 use etendue_scene::film::TileSamples;
 use etendue_scene::{Film, Scene};

@@ -108,6 +108,18 @@ pub trait Follow: Sync {
     /// Follows one path, and gives the radiance that it brings by itself.
     fn follow(&self, tracer: &Tracer<'_>, path: &mut CameraPath<'_, '_>) -> (Sampled, Self::Left);
 
+    /// What paths have in common beyond their groups; `own` is what a path would have.
+    #[inline]
+    fn common(&self, own: Common) -> Common {
+        own
+    }
+
+    /// Samples of the image that a tile of so many paths is: a method may take several paths for one.
+    #[inline]
+    fn n_samples(&self, n_paths: u64) -> u64 {
+        n_paths
+    }
+
     /// Adds what the paths of a group bring each other.
     fn join(&self, tracer: &Tracer<'_>, group: &mut [FollowedPath<Self::Left>]);
 }
@@ -129,9 +141,11 @@ pub struct FollowedPath<L> {
 
 /// What the paths of a group have in common: random numbers of the first.
 #[derive(Clone, Copy, Debug)]
-struct Common {
-    u_lambda: f32,
-    u_time: f32,
+pub struct Common {
+    /// Chooses the wavelengths, in [0, 1).
+    pub u_lambda: f32,
+    /// Chooses the time, in [0, 1).
+    pub u_time: f32,
 }
 
 impl CameraPass<'_> {
@@ -175,7 +189,7 @@ impl CameraPass<'_> {
                 }
                 let tracer = Tracer::new(scene);
                 let samples = self.run_tile(&tracer, pass, film.start_tile(bounds, memory), method);
-                control.tile_done(bounds.n_pixels() as u64, tracer.counts());
+                control.tile_done(method.n_samples(bounds.n_pixels() as u64), tracer.counts());
                 Some(samples)
             })
             .collect();
@@ -261,6 +275,7 @@ impl CameraPass<'_> {
     ) -> FollowedPath<F::Left> {
         let CameraSample { pixel, numbers_of, pass, mut sampler, common, p_film, u_lens, filter_weight } =
             start;
+        let common = method.common(common);
         let mut lambda = self.wavelengths.sample(common.u_lambda);
         let (mut radiance, mut left, mut camera_weight) = (Sampled::ZERO, F::Left::default(), 0.0);
         if let Some(CameraRay { ray, weight }) = tracer.scene.camera.sample_ray(p_film, u_lens, common.u_time)

@@ -21,7 +21,7 @@ use crate::path::roulette::survival_probability;
 
 /// The vertex that the path last scattered at, for the density with which it might have sampled a light instead.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LastScattering {
+pub(crate) struct LastScattering {
     reference: Reference,
     /// Density of the directions taken for each light sample, per steradian; `None` if no light sample could have found them.
     pdf_w: Option<f32>,
@@ -29,28 +29,28 @@ pub(super) struct LastScattering {
 
 /// A random walk from the camera.
 #[derive(Clone, Copy)]
-pub(super) struct Walk<'s> {
-    pub(super) settings: &'s PathSettings,
+pub(crate) struct Walk<'s> {
+    pub(crate) settings: &'s PathSettings,
     ray: Ray,
     /// Throughput: product of `f |cos| / pdf`, in radiance's measure.
-    pub(super) beta: Sampled,
+    pub(crate) beta: Sampled,
     /// What roulette multiplies the throughput by: the product of squared relative indices, so that it sees flux and not
     /// radiance, and the number of walks among which the throughput was divided.
-    pub(super) roulette_scale: f32,
-    pub(super) has_split: bool,
+    pub(crate) roulette_scale: f32,
+    pub(crate) has_split: bool,
     /// Scattering events so far.
-    pub(super) depth: u32,
+    pub(crate) depth: u32,
     last: Option<LastScattering>,
-    pub(super) has_scattered_widely: bool,
+    pub(crate) has_scattered_widely: bool,
     /// What the ray travels through.
-    pub(super) medium: Option<MediumId>,
+    pub(crate) medium: Option<MediumId>,
     /// What is switched off on the way; of no use where nothing is.
     artist: Artist,
-    pub(super) radiance: Sampled,
+    pub(crate) radiance: Sampled,
 }
 
 impl<'s> Walk<'s> {
-    pub(super) fn new(settings: &'s PathSettings, path: &CameraPath<'_, '_>) -> Self {
+    pub(crate) fn new(settings: &'s PathSettings, path: &CameraPath<'_, '_>) -> Self {
         Self {
             settings,
             ray: path.ray,
@@ -66,8 +66,16 @@ impl<'s> Walk<'s> {
         }
     }
 
+    /// The same walk by other settings, which has brought nothing yet.
+    pub(crate) fn with_settings<'a>(self, settings: &'a PathSettings) -> Walk<'a>
+    where
+        's: 'a,
+    {
+        Walk { settings, radiance: Sampled::ZERO, ..self }
+    }
+
     /// Follows the path to its end, and returns what it brings.
-    pub(super) fn follow(mut self, tracer: &Tracer<'_>, path: &mut CameraPath<'_, '_>) -> Sampled {
+    pub(crate) fn follow(mut self, tracer: &Tracer<'_>, path: &mut CameraPath<'_, '_>) -> Sampled {
         let visit = |walk: &mut Self, surface: &Surface, bsdf: &Bsdf, path: &mut CameraPath<'_, '_>| {
             walk.visit(tracer, surface, bsdf, path)
         };
@@ -77,7 +85,7 @@ impl<'s> Walk<'s> {
 
     /// Adds the direct light of a surface and leaves it; `false` if the radiance is complete.
     #[inline]
-    pub(super) fn visit(
+    pub(crate) fn visit(
         &mut self,
         tracer: &Tracer<'_>,
         surface: &Surface,
@@ -98,7 +106,7 @@ impl<'s> Walk<'s> {
     }
 
     /// [Follows](Self::follow) the path if it goes on; what it brings.
-    pub(super) fn follow_if(
+    pub(crate) fn follow_if(
         self,
         goes_on: bool,
         tracer: &Tracer<'_>,
@@ -110,7 +118,7 @@ impl<'s> Walk<'s> {
     /// Goes to the next surface that the path may scatter at, adding the emission on the way and of the surface itself;
     /// `None` if the path ends before.
     #[inline(always)]
-    pub(super) fn arrive(
+    pub(crate) fn arrive(
         &mut self,
         tracer: &Tracer<'_>,
         path: &mut CameraPath<'_, '_>,
@@ -202,7 +210,7 @@ impl<'s> Walk<'s> {
     }
 
     /// What the path has brought so far, and the mean of as many samples of the direct light as are wanted.
-    pub(super) fn light_samples(
+    pub(crate) fn light_samples(
         &self,
         tracer: &Tracer<'_>,
         surface: &Surface,
@@ -253,7 +261,7 @@ impl<'s> Walk<'s> {
     }
 
     /// The radiance of a walk that stands at a surface whose direct light it has.
-    pub(super) fn finish(
+    pub(crate) fn finish(
         mut self,
         tracer: &Tracer<'_>,
         surface: &Surface,
@@ -344,7 +352,7 @@ impl<'s> Walk<'s> {
     /// A light that the surface sees, weighted against so many directions of scattering, with what is left of its
     /// radiance on the way to the camera.
     #[inline]
-    pub(super) fn direct_light(
+    pub(crate) fn direct_light(
         &self,
         tracer: &Tracer<'_>,
         surface: &Surface,
@@ -370,7 +378,7 @@ impl<'s> Walk<'s> {
     }
 
     /// Light that reaches the surface straight from one light.
-    pub(super) fn add_direct_light(
+    pub(crate) fn add_direct_light(
         &mut self,
         tracer: &Tracer<'_>,
         surface: &Surface,
@@ -404,7 +412,7 @@ impl<'s> Walk<'s> {
 
     /// Leaves a surface in a sampled direction.
     #[inline]
-    pub(super) fn leave(
+    pub(crate) fn leave(
         &mut self,
         scene: &Scene,
         surface: &Surface,
@@ -437,7 +445,7 @@ impl<'s> Walk<'s> {
         }
     }
 
-    pub(super) fn survives_roulette(&mut self, path: &mut CameraPath<'_, '_>) -> bool {
+    pub(crate) fn survives_roulette(&mut self, path: &mut CameraPath<'_, '_>) -> bool {
         if self.depth <= self.settings.roulette_depth {
             return true;
         }

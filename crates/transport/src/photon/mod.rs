@@ -8,6 +8,7 @@
 pub mod emit;
 pub mod estimate;
 pub mod map;
+pub mod progressive;
 pub mod switches;
 pub mod trail;
 pub mod walk;

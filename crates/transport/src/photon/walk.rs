@@ -65,6 +65,8 @@ pub struct PhotonVertex<'a> {
     pub medium: Option<MediumId>,
     /// Its events before this surface.
     pub trail: Trail,
+    /// Their number, also where the trail does not hold all of them.
+    pub depth: u32,
     /// The last of them, if any, also where there were more than the trail holds.
     pub last_event: Option<Event>,
 }
@@ -143,6 +145,7 @@ impl PhotonWalk {
                 lambda,
                 medium,
                 trail,
+                depth,
                 last_event,
             };
             if visit(&vertex) == Onward::Stop || depth == self.max_depth {

@@ -22,6 +22,7 @@ mod motion;
 mod passes;
 mod photons;
 mod pictures;
+mod progressive;
 mod radiometry;
 mod reuse;
 mod scenes;

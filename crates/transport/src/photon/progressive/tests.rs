@@ -1,0 +1,34 @@
+use super::schedule::{group, shrink};
+
+/// The product of the paper, also where it is not multiplied out.
+#[test]
+fn radii_shrink_by_the_product() {
+    let alpha = 2.0_f32 / 3.0;
+    let mut squared = 1.0_f64;
+    for pass in 0..5000_u64 {
+        let expected = squared.sqrt() as f32;
+        assert!((shrink(pass, alpha) / expected - 1.0).abs() < 1e-5, "{pass}");
+        let i = (pass + 1) as f64;
+        squared *= (i + f64::from(alpha)) / (i + 1.0);
+    }
+    assert_eq!(shrink(1_000_000, 1.0), 1.0);
+    assert!(shrink(u64::MAX / 2, 0.5) > 0.0);
+}
+
+/// Four groups have four heroes, and few groups have wavelengths that are even.
+#[test]
+fn groups_are_even() {
+    for seed in 0..10 {
+        let numbers: Vec<f32> = (0..32).map(|number| group(seed, number).u_lambda).collect();
+        for four in numbers.chunks(4) {
+            let mut heroes: Vec<u32> = four.iter().map(|u| (u * 4.0) as u32).collect();
+            heroes.sort_unstable();
+            assert_eq!(heroes, [0, 1, 2, 3]);
+        }
+        let mut places: Vec<f32> = numbers.iter().map(|u| (u * 4.0).fract()).collect();
+        places.sort_by(f32::total_cmp);
+        let gaps = places.windows(2).map(|pair| pair[1] - pair[0]);
+        let widest = gaps.fold(1.0 - places[31] + places[0], f32::max);
+        assert!(widest < 3.0 / 32.0, "{widest}");
+    }
+}

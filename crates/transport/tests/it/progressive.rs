@@ -1,0 +1,273 @@
+//! Progressive photon mapping against closed forms, against the path tracer and against itself (SPEC PROG-1, PROG-2).
+
+use etendue_math::statistics::Moments;
+use etendue_scene::document::{Entity, Value};
+use etendue_scene::{Film, Scene};
+use etendue_transport::lpe::PathExpressions;
+use etendue_transport::{Passes, Stop, Unobserved, method, render};
+
+use crate::support::{
+    Setup, block_moments, channel, expect_agreement, expect_equal_pixels, expect_near, expect_same_image, flat,
+    layer, lit, luminance, render_layers, render_passes, seed,
+};
+
+/// Looks straight down at a square of 20 cm of the plane z = 0.
+const DOWN: &str = "LookAt 0 0 0.9  0 0 0  0 1 0 Camera \"orthographic\" \"float screenwindow\" [-0.1 0.1 -0.1 0.1]";
+
+fn level(z: f64, half: f64) -> String {
+    format!(
+        "Shape \"bilinearmesh\" \"point3 P\" [-{half} -{half} {z}  {half} -{half} {z}  -{half} {half} {z}  {half} {half} {z}]"
+    )
+}
+
+/// The method in place of the scene's.
+fn by(mut scene: Scene, name: &str, parameters: &[(&str, Value)]) -> Scene {
+    let entity = Entity::new(name);
+    scene.integrator =
+        parameters.iter().fold(entity, |entity, (name, value)| entity.with(name, value.clone()));
+    scene
+}
+
+fn integer(value: i32) -> Value {
+    Value::Integers(vec![value])
+}
+
+fn float(value: f64) -> Value {
+    Value::Floats(vec![value as f32])
+}
+
+fn word(value: &str) -> Value {
+    Value::Strings(vec![value.to_owned()])
+}
+
+/// A lamp of luminous intensity 1 that is 10 m above a floor, behind a pane: no path from the camera finds it.
+fn under_a_pane(reflectance: &str, name: &str) -> Scene {
+    let world = format!(
+        "LightSource \"point\" {} \"point3 from\" [0 0 10]
+        Material \"diffuse\" {reflectance} {}
+        Material \"thindielectric\" \"float eta\" 1.5 {}",
+        lit("I", 1.0),
+        level(0.0, 0.5),
+        level(1.0, 0.6),
+    );
+    Setup { size: [16, 16], camera: DOWN, world: &world, ..Setup::default() }.scene(name)
+}
+
+/// What of the lamp's light gets through the pane, falls on a floor of that reflectance and goes up.
+fn through_the_pane(reflectance: f64) -> f64 {
+    let r = 0.04;
+    let through = 1.0 - 2.0 * r / (1.0 + r);
+    reflectance / std::f64::consts::PI * through / 100.0
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// PROG-1, PROG-2: light that comes through glass to a diffuse surface, by both methods and both ways to shrink the radius.
+#[test]
+fn light_through_a_pane_arrives() {
+    for name in ["sppm", "ppm"] {
+        for update in ["schedule", "perpixel"] {
+            let parameters =
+                [("radiusupdate", word(update)), ("radius", float(0.05)), ("photonsperiteration", integer(200_000))];
+            let scene = by(under_a_pane(&flat("reflectance", 0.5), name), name, &parameters);
+            let film = render_passes(&scene, 0..8);
+            // The floor is 1 m wide: a share of 1 in 1300 of the photons falls on it, 60 of them on what is seen.
+            let image = mean(&luminance(&film));
+            expect_near(&format!("{name} {update}"), image, through_the_pane(0.5), 0.1);
+        }
+    }
+}
+
+/// Wavelengths of few passes do not tint: each channel of a coloured floor is right within 1 % of its share after 8 passes.
+#[test]
+fn few_passes_do_not_tint() {
+    let grey = by(under_a_pane(&flat("reflectance", 0.5), "tint"), "sppm", &[("radius", float(0.05))]);
+    let red = by(under_a_pane("\"rgb reflectance\" [0.6 0.3 0.1]", "tint"), "sppm", &[("radius", float(0.05))]);
+    let (grey, red) = (render_passes(&grey, 0..8).develop(), render_passes(&red, 0..8).develop());
+    // Grey tells how many photons have come; they are the same in both, but for the wavelengths' share in the floor's colour.
+    for (name, expected) in [("R", 0.6), ("G", 0.3), ("B", 0.1)] {
+        let ratio = mean(&channel(&red, name)) / mean(&channel(&grey, name)) * 0.5;
+        expect_near(name, ratio, expected, 0.02);
+    }
+}
+
+/// Mirrors, glass, coats, rough metal, a clear liquid, and a lamp that all methods find.
+fn still_life(name: &str, size: [u32; 2], camera: &str) -> Scene {
+    let world = format!(
+        "AttributeBegin Material \"diffuse\" {black} AreaLightSource \"diffuse\" {lamp}
+        Translate 0 1.9 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" 0.6 AttributeEnd
+        Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.5]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  1 -1 1  -1 2 1  1 2 1]
+        Material \"coateddiffuse\" \"float roughness\" 0 \"rgb reflectance\" [0.2 0.5 0.3]
+        Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -1  -1 -1 1  -1 2 -1  -1 2 1]
+        Material \"coateddiffuse\" \"float roughness\" 0.1 \"rgb reflectance\" [0.2 0.3 0.5]
+        Shape \"bilinearmesh\" \"point3 P\" [1 -1 -1  1 -1 1  1 2 -1  1 2 1]
+        AttributeBegin Translate -0.45 -0.6 0.2 Material \"conductor\" \"float roughness\" 0.3
+        Shape \"sphere\" \"float radius\" 0.35 AttributeEnd
+        AttributeBegin Translate 0.45 -0.6 -0.1 Material \"dielectric\" \"spectrum eta\" \"glass-SF11\"
+        Shape \"sphere\" \"float radius\" 0.35 AttributeEnd
+        AttributeBegin Translate 0 0.3 0.5 Material \"conductor\" Shape \"sphere\" \"float radius\" 0.3 AttributeEnd",
+        black = flat("reflectance", 0.0),
+        lamp = lit("L", 10.0),
+    );
+    Setup { size, sampler: "\"sobol\"", camera, world: &world, ..Setup::default() }.scene(name)
+}
+
+const FRONT: &str = "LookAt 0 0 -4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 42";
+
+/// All kinds of paths agree with the path tracer, block by block, also with the depth limit.
+#[test]
+fn the_still_life_is_that_of_the_path_tracer() {
+    let scene = still_life("still life", [32, 32], FRONT);
+    let depth = ("maxdepth", integer(7));
+    let path = block_moments(&by(scene, "path", &[depth.clone()]), 64, 4);
+    let scene = still_life("still life", [32, 32], FRONT);
+    let small = [depth, ("radius", float(0.04)), ("photonsperiteration", integer(16_000))];
+    let sppm = block_moments(&by(scene, "sppm", &small), 24, 4);
+    expect_same_image("still life", &sppm, &path, 0.05);
+}
+
+fn in_threads(n: usize, work: impl FnOnce() -> Film + Send) -> Film {
+    rayon::ThreadPoolBuilder::new().num_threads(n).build().expect("threads").install(work)
+}
+
+/// One seed gives one image for any number of threads, and any split of passes that are independent.
+#[test]
+fn threads_and_splits_change_nothing() {
+    for update in ["schedule", "perpixel"] {
+        let scene = still_life("threads", [70, 40], FRONT);
+        let parameters = [("photonsperiteration", integer(10_000)), ("radiusupdate", word(update))];
+        let scene = by(scene, "sppm", &parameters);
+        let layers = [("caustic", "LS+DE"), ("indirect", "L(S|D)*D(S|D)*E")];
+        let alone = in_threads(1, || render_layers(&scene, 0..3, &layers));
+        let together = in_threads(2, || render_layers(&scene, 0..3, &layers));
+        assert_eq!(together.sums(), alone.sums(), "{update}");
+        if update == "schedule" {
+            let mut parts = in_threads(2, || render_layers(&scene, 2..3, &layers)).sums().clone();
+            parts.merge(render_layers(&scene, 0..2, &layers).sums()).expect("different passes");
+            assert_eq!(&parts, alone.sums());
+        }
+    }
+}
+
+/// What pixels remember survives a checkpoint: two passes and two more are four.
+#[test]
+fn saved_state_goes_on() {
+    for name in ["sppm", "ppm"] {
+        let scene = by(
+            still_life("state", [16, 16], FRONT),
+            name,
+            &[("radiusupdate", word("perpixel")), ("photonsperiteration", integer(4000))],
+        );
+        let start = || method(&scene.integrator, PathExpressions::default()).0.expect("a method");
+        let mut film = Film::new(scene.film.clone(), Vec::new());
+        let run = |integrator: &mut dyn etendue_transport::Integrator, film: &mut Film, passes| {
+            render(&scene, integrator, film, &Stop { passes, error: None }, &Unobserved);
+        };
+        let mut first = start();
+        assert_eq!(first.passes(), Passes::Sequential);
+        assert!(first.save().is_empty());
+        run(first.as_mut(), &mut film, 0..2);
+        let state = first.save();
+        let mut second = start();
+        second.load(&state).expect("its own state");
+        run(second.as_mut(), &mut film, 2..4);
+        assert_eq!(film.sums(), render_passes(&scene, 0..4).sums(), "{name}");
+        for broken in [&state[..state.len() - 3], &state[1..], b"sppm\0\0\0\x01\xff\xff\xff\xff\0\0\0\0"] {
+            start().load(broken).expect_err("no state of this method");
+        }
+    }
+}
+
+/// Disjoint layers add up to the image, and each is that of the path tracer.
+#[test]
+fn layers_are_those_of_the_path_tracer() {
+    let layers = [
+        ("seen", "L(S|D)?E"),
+        ("caustic", "LS+DE"),
+        ("rest", "L(S|D)*(D(S|D)+|SS)E"),
+        ("all", "L(S|D)*E"),
+        ("deep", "LDD+S*E"),
+    ];
+    let render = |name: &str, n: u64, parameters: &[(&str, Value)]| {
+        let scene = by(still_life("layers", [16, 16], FRONT), name, parameters);
+        render_layers(&scene, 0..n, &layers)
+    };
+    let small = [("photonsperiteration", integer(20_000)), ("radius", float(0.05))];
+    let (sppm, path) = (render("sppm", 16, &small), render("path", 1024, &[]));
+    expect_equal_pixels("all", &layer(&sppm, "all"), &luminance(&sppm), 1e-4);
+    for (name, tolerance) in [("seen", 0.02), ("caustic", 0.3), ("deep", 0.05)] {
+        expect_near(name, mean(&layer(&sppm, name)), mean(&layer(&path, name)), tolerance);
+    }
+}
+
+/// A lens, motion, surroundings, surfaces that let light pass and a clear coloured liquid: the mean over the image is that of
+/// the path tracer.
+#[test]
+fn whole_scenes_are_those_of_the_path_tracer() {
+    let floor = "Material \"diffuse\" \"rgb reflectance\" [0.8 0.7 0.6] Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1]";
+    let lamp = format!(
+        "AttributeBegin AreaLightSource \"diffuse\" {} Translate 0 2 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" 0.8 AttributeEnd",
+        lit("L", 5.0)
+    );
+    let sky = format!("LightSource \"infinite\" {}", lit("L", 0.5));
+    let ball = "Material \"diffuse\" \"rgb reflectance\" [0.5 0.7 0.4] Shape \"sphere\" \"float radius\" 0.4";
+    let moving = format!("{lamp} {floor} AttributeBegin ActiveTransform EndTime Translate 0.8 0.3 0 ActiveTransform All {ball} AttributeEnd");
+    let alpha = format!("{lamp} {floor} {ball} \"float alpha\" 0.5");
+    let liquid = format!(
+        "{lamp} {floor} AttributeBegin Translate 0 -0.5 0 Material \"dielectric\" \"float eta\" 1.33 \"spectrum absorption\" [360 0.2 830 1.5]
+        Shape \"sphere\" \"float radius\" 0.45 AttributeEnd"
+    );
+    let lens = "LookAt 0 0 -4  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 42 \"float lensradius\" 0.2 \"float focaldistance\" 3";
+    let scenes = [
+        ("lens", lens, format!("{lamp} {floor} {ball}")),
+        ("sky", FRONT, format!("{sky} {floor} {ball}")),
+        ("motion", FRONT, moving),
+        ("alpha", FRONT, alpha),
+        ("liquid", FRONT, liquid),
+    ];
+    for (name, camera, world) in scenes {
+        let scene = || Setup { size: [16, 16], sampler: "\"sobol\"", camera, world: &world, ..Setup::default() }.scene(name);
+        let blocks = |method: &str, n, parameters: &[(&str, Value)]| block_moments(&by(scene(), method, parameters), n, 2);
+        let small = [("photonsperiteration", integer(16_000)), ("radius", float(0.05))];
+        let (sppm, path) = (blocks("sppm", 16, &small), blocks("path", 64, &[]));
+        expect_same_image(name, &sppm, &path, 0.1);
+    }
+}
+
+/// Nothing to find is black, or what samples of lights find: never NaN, never a panic.
+#[test]
+fn empty_scenes_are_black() {
+    let floor = level(0.0, 0.5);
+    let point = |place: &str| format!("LightSource \"point\" {} \"point3 from\" [{place}] ", lit("I", 1.0));
+    let scenes = [
+        (String::new(), true),
+        (floor.clone(), true),
+        (point("0 0 5"), true),
+        (point("0 0 -5") + &floor, true),
+        (format!("{} Material \"diffuse\" {} {floor}", point("0 0 5"), flat("reflectance", 0.0)), true),
+        (point("0 0 5") + &floor, false),
+        (point("0 0 0") + &floor, true),
+    ];
+    for (index, (world, is_black)) in scenes.iter().enumerate() {
+        let scene = Setup { size: [8, 8], camera: DOWN, world, ..Setup::default() }.scene("empty");
+        let settings: [Vec<(&str, Value)>; 5] = [
+            vec![],
+            vec![("photonsperiteration", integer(1))],
+            vec![("maxdepth", integer(0))],
+            vec![("radius", float(1e-30))],
+            vec![("radius", float(1e30)), ("radiusupdate", word("perpixel"))],
+        ];
+        let mut scene = scene;
+        for parameters in settings {
+            scene = by(scene, "sppm", &parameters);
+            let film = render_passes(&scene, 0..2);
+            let total: f64 = luminance(&film).iter().sum();
+            let expects_black = *is_black || parameters.first().is_some_and(|p| p.0 == "maxdepth");
+            assert!(total.is_finite() && (total == 0.0) == expects_black, "scene {index}: {total}");
+        }
+    }
+}
