@@ -10,8 +10,8 @@ use crate::integrator::Integrator;
 use crate::light_tracing::{LightSettings, LightTracer};
 use crate::lpe::PathExpressions;
 use crate::path_tracing::{PathSettings, PathTracer};
-use crate::whitted::{Whitted, WhittedSettings};
 use crate::photon::progressive::{Progressive, ProgressiveSettings};
+use crate::whitted::{Whitted, WhittedSettings};
 
 /// What documentation says of a method.
 #[derive(Clone, Copy, Debug)]

@@ -1,18 +1,18 @@
 //! Progressive photon mapping against closed forms, against the path tracer and against itself (SPEC PROG-1, PROG-2).
 
-use etendue_math::statistics::Moments;
 use etendue_scene::document::{Entity, Value};
 use etendue_scene::{Film, Scene};
 use etendue_transport::lpe::PathExpressions;
 use etendue_transport::{Passes, Stop, Unobserved, method, render};
 
 use crate::support::{
-    Setup, block_moments, channel, expect_agreement, expect_equal_pixels, expect_near, expect_same_image, flat,
-    layer, lit, luminance, render_layers, render_passes, seed,
+    Setup, block_moments, channel, expect_equal_pixels, expect_near, expect_same_image, flat, layer, lit,
+    luminance, render_layers, render_passes,
 };
 
 /// Looks straight down at a square of 20 cm of the plane z = 0.
-const DOWN: &str = "LookAt 0 0 0.9  0 0 0  0 1 0 Camera \"orthographic\" \"float screenwindow\" [-0.1 0.1 -0.1 0.1]";
+const DOWN: &str =
+    "LookAt 0 0 0.9  0 0 0  0 1 0 Camera \"orthographic\" \"float screenwindow\" [-0.1 0.1 -0.1 0.1]";
 
 fn level(z: f64, half: f64) -> String {
     format!(
@@ -69,8 +69,11 @@ fn mean(values: &[f64]) -> f64 {
 fn light_through_a_pane_arrives() {
     for name in ["sppm", "ppm"] {
         for update in ["schedule", "perpixel"] {
-            let parameters =
-                [("radiusupdate", word(update)), ("radius", float(0.05)), ("photonsperiteration", integer(200_000))];
+            let parameters = [
+                ("radiusupdate", word(update)),
+                ("radius", float(0.05)),
+                ("photonsperiteration", integer(200_000)),
+            ];
             let scene = by(under_a_pane(&flat("reflectance", 0.5), name), name, &parameters);
             let film = render_passes(&scene, 0..8);
             // The floor is 1 m wide: a share of 1 in 1300 of the photons falls on it, 60 of them on what is seen.
@@ -84,7 +87,8 @@ fn light_through_a_pane_arrives() {
 #[test]
 fn few_passes_do_not_tint() {
     let grey = by(under_a_pane(&flat("reflectance", 0.5), "tint"), "sppm", &[("radius", float(0.05))]);
-    let red = by(under_a_pane("\"rgb reflectance\" [0.6 0.3 0.1]", "tint"), "sppm", &[("radius", float(0.05))]);
+    let red =
+        by(under_a_pane("\"rgb reflectance\" [0.6 0.3 0.1]", "tint"), "sppm", &[("radius", float(0.05))]);
     let (grey, red) = (render_passes(&grey, 0..8).develop(), render_passes(&red, 0..8).develop());
     // Grey tells how many photons have come; they are the same in both, but for the wavelengths' share in the floor's colour.
     for (name, expected) in [("R", 0.6), ("G", 0.3), ("B", 0.1)] {
@@ -215,7 +219,9 @@ fn whole_scenes_are_those_of_the_path_tracer() {
     );
     let sky = format!("LightSource \"infinite\" {}", lit("L", 0.5));
     let ball = "Material \"diffuse\" \"rgb reflectance\" [0.5 0.7 0.4] Shape \"sphere\" \"float radius\" 0.4";
-    let moving = format!("{lamp} {floor} AttributeBegin ActiveTransform EndTime Translate 0.8 0.3 0 ActiveTransform All {ball} AttributeEnd");
+    let moving = format!(
+        "{lamp} {floor} AttributeBegin ActiveTransform EndTime Translate 0.8 0.3 0 ActiveTransform All {ball} AttributeEnd"
+    );
     let alpha = format!("{lamp} {floor} {ball} \"float alpha\" 0.5");
     let liquid = format!(
         "{lamp} {floor} AttributeBegin Translate 0 -0.5 0 Material \"dielectric\" \"float eta\" 1.33 \"spectrum absorption\" [360 0.2 830 1.5]
@@ -230,8 +236,13 @@ fn whole_scenes_are_those_of_the_path_tracer() {
         ("liquid", FRONT, liquid),
     ];
     for (name, camera, world) in scenes {
-        let scene = || Setup { size: [16, 16], sampler: "\"sobol\"", camera, world: &world, ..Setup::default() }.scene(name);
-        let blocks = |method: &str, n, parameters: &[(&str, Value)]| block_moments(&by(scene(), method, parameters), n, 2);
+        let scene = || {
+            Setup { size: [16, 16], sampler: "\"sobol\"", camera, world: &world, ..Setup::default() }
+                .scene(name)
+        };
+        let blocks = |method: &str, n, parameters: &[(&str, Value)]| {
+            block_moments(&by(scene(), method, parameters), n, 2)
+        };
         let small = [("photonsperiteration", integer(16_000)), ("radius", float(0.05))];
         let (sppm, path) = (blocks("sppm", 16, &small), blocks("path", 64, &[]));
         expect_same_image(name, &sppm, &path, 0.1);

@@ -215,8 +215,7 @@ impl Eye<'_> {
             None => self.shrink,
         };
         let radius = self.first_radius.at(point.p, state.distance, cosine, &mut state.neighbours) * shrink;
-        let scale =
-            1.0 / (std::f32::consts::PI * radius * radius * self.photons.n_emitted as f32);
+        let scale = 1.0 / (std::f32::consts::PI * radius * radius * self.photons.n_emitted as f32);
         if !scale.is_finite() {
             return;
         }
@@ -251,7 +250,11 @@ impl Eye<'_> {
                     return;
                 }
                 n_photons += 1;
-                if photon.is_single { one += photon.flux[0] * f[0] } else { all += photon.flux * f }
+                if photon.is_single {
+                    one += photon.flux[0] * f[0]
+                } else {
+                    all += photon.flux * f
+                }
                 if !path.layers.is_idle() {
                     self.record(photon, index, surface, bsdf, lobes, walk.beta * scale, path);
                 }

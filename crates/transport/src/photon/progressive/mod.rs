@@ -115,8 +115,7 @@ impl Progressive {
         let by_pixels = n_pixels.clamp(*PHOTONS_BY_PIXELS.start(), *PHOTONS_BY_PIXELS.end()) as u64;
         let n_pass = settings.photons.map_or(by_pixels, u64::from);
         let n_photons = n_pass.div_ceil(u64::from(settings.n_groups));
-        let sampler =
-            SamplerSettings { seed: hash64(&[scene.sampler.seed, settings.seed]), ..scene.sampler };
+        let sampler = SamplerSettings { seed: hash64(&[scene.sampler.seed, settings.seed]), ..scene.sampler };
         let walk = PhotonWalk {
             // The last event is that of the visible point.
             max_depth: settings.max_depth.saturating_sub(1),

@@ -164,7 +164,13 @@ impl PhotonPlan<'_> {
         if flux.is_black() || !flux.is_finite() {
             return;
         }
-        part.photons.push(GroupPhoton { flux, p: surface.point.p, wi, depth: vertex.depth as u16, is_single });
+        part.photons.push(GroupPhoton {
+            flux,
+            p: surface.point.p,
+            wi,
+            depth: vertex.depth as u16,
+            is_single,
+        });
         if self.wants_trails {
             part.trails.push(vertex.trail);
         }

@@ -89,8 +89,7 @@ impl FirstRadius {
 impl Density {
     fn radius(&self, p: Point3, distance: f32, cosine: f32, found: &mut Neighbours) -> f32 {
         self.pilots.nearest(p, 1, self.largest, found);
-        let by_density =
-            found.iter().next().map_or(self.largest, |pilot| self.radii[pilot.index as usize]);
+        let by_density = found.iter().next().map_or(self.largest, |pilot| self.radii[pilot.index as usize]);
         by_density.max(LEAST_PIXELS * self.footprint.at(distance) / cosine.max(0.1).sqrt())
     }
 }

@@ -151,13 +151,7 @@ impl ProgressiveSettings {
             unit: "",
             doc: "groups of a pass, which share its photons; each has wavelengths of its own and a camera path for each pixel",
         },
-        ParameterSpec {
-            name: "seed",
-            kind: "integer",
-            default: "0",
-            unit: "",
-            doc: "changes the photons",
-        },
+        ParameterSpec { name: "seed", kind: "integer", default: "0", unit: "", doc: "changes the photons" },
         ParameterSpec {
             name: "lightsampler",
             kind: "string",
