@@ -51,22 +51,28 @@ pub fn choose_light(
     sampler: &mut Sampler,
     lambda: &Wavelengths,
 ) -> Option<Candidate> {
-    let n_groups = scene.light_sampler.n_groups();
     let (u_light, u_place) = (sampler.next_1d(), sampler.next_2d());
-    let candidate = |group: usize| {
+    let candidate = |group| {
         let light = sample_light(scene, group, surface, (u_light, u_place), lambda)?;
         let (f_cos, pdf_scatter) = bsdf.eval_cos_and_pdf(surface.wo, light.sample.wi);
         let weighted = light.weighted(scattering_weight * pdf_scatter);
         let unoccluded = f_cos * weighted;
         (!unoccluded.is_black()).then_some(Candidate { light, weighted, unoccluded, weight: 1.0 })
     };
+    let n_groups = scene.light_sampler.n_groups();
     if n_groups == 1 {
         return candidate(0);
     }
     // A number of its own for the choice, where one is taken.
-    let mut u = if scene.light_sampler.uses_number() { sampler.next_1d() } else { u_light };
+    let u = if scene.light_sampler.uses_number() { sampler.next_1d() } else { u_light };
+    choose_candidate((0..n_groups).filter_map(candidate), u)
+}
+
+/// One of several candidates, in proportion to what the surface would send on of them.
+#[inline(never)]
+fn choose_candidate(candidates: impl Iterator<Item = Candidate>, mut u: f32) -> Option<Candidate> {
     let (mut chosen, mut sum, mut chosen_share) = (None, 0.0, 0.0);
-    for candidate in (0..n_groups).filter_map(candidate) {
+    for candidate in candidates {
         let share = candidate.unoccluded.average();
         if share <= 0.0 || !share.is_finite() {
             continue;

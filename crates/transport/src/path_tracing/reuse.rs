@@ -171,14 +171,12 @@ fn find_source(
     // Light arriving at y does not depend on the way from the camera.
     let mut alone = walk;
     alone.beta = Sampled::ONE;
-    let direct = alone.direct_light(tracer, &y, &y_bsdf, 1.0, path).map_or(
-        (y.wo, Sampled::ZERO),
-        |(candidate, through)| {
-            let wi = candidate.light.sample.wi;
-            let light = through * candidate.weighted * y_bsdf.abs_cos(wi);
-            (wi, of_all_wavelengths(light, path.lambda, &lambda))
-        },
-    );
+    let direct = alone.direct_light(tracer, &y, &y_bsdf, 1.0, path, |candidate, through, path| {
+        let wi = candidate.light.sample.wi;
+        let light = through * candidate.weighted * y_bsdf.abs_cos(wi);
+        (wi, of_all_wavelengths(light, path.lambda, &lambda))
+    });
+    let direct = direct.unwrap_or((y.wo, Sampled::ZERO));
     let mut indirect = (y.wo, Sampled::ZERO);
     let mut own = walk.radiance;
     if !can_share(&y_bsdf) {

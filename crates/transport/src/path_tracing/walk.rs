@@ -274,7 +274,7 @@ impl<'s> Walk<'s> {
     }
 
     /// Chooses where the path goes from a surface; `false` if it ends there.
-    #[inline]
+    #[inline(always)]
     fn goes_on(
         &mut self,
         scene: &Scene,
@@ -349,22 +349,24 @@ impl<'s> Walk<'s> {
         }
     }
 
-    /// A light that the surface sees, weighted against so many directions of scattering, with what is left of its
-    /// radiance on the way to the camera.
-    #[inline]
-    pub(crate) fn direct_light(
+    /// Does something with a light that the surface sees, weighted against so many directions of scattering, and with what is
+    /// left of its radiance on the way to the camera.
+    #[inline(always)]
+    pub(crate) fn direct_light<T>(
         &self,
         tracer: &Tracer<'_>,
         surface: &Surface,
         bsdf: &Bsdf,
         walks_per_light_sample: f32,
         path: &mut CameraPath<'_, '_>,
-    ) -> Option<(Candidate, Sampled)> {
+        work: impl FnOnce(&Candidate, Sampled, &mut CameraPath<'_, '_>) -> T,
+    ) -> Option<T> {
         if self.settings.lights == LightStrategy::Scattering || !bsdf.lobes().has_non_specular() {
             return None;
         }
         let weighs = if self.settings.lights == LightStrategy::Both { walks_per_light_sample } else { 0.0 };
-        let candidate = choose_light(tracer.scene, surface, bsdf, weighs, path.sampler, path.lambda)?;
+        let chosen = choose_light(tracer.scene, surface, bsdf, weighs, path.sampler, path.lambda);
+        let candidate = chosen.as_ref()?;
         let light = &candidate.light.sample;
         let visible = visibility(tracer, surface, light) * candidate.weight;
         if visible == 0.0 {
@@ -374,10 +376,11 @@ impl<'s> Walk<'s> {
         if let Some(medium) = tracer.scene.medium_towards(surface, light.wi, self.medium) {
             through *= tracer.scene.transmittance_of(medium, light.distance, path.lambda);
         }
-        Some((candidate, through))
+        Some(work(candidate, through, path))
     }
 
     /// Light that reaches the surface straight from one light.
+    #[inline(always)]
     pub(crate) fn add_direct_light(
         &mut self,
         tracer: &Tracer<'_>,
@@ -386,28 +389,49 @@ impl<'s> Walk<'s> {
         walks_per_light_sample: f32,
         path: &mut CameraPath<'_, '_>,
     ) {
-        let Some((candidate, through)) =
-            self.direct_light(tracer, surface, bsdf, walks_per_light_sample, path)
-        else {
-            return;
-        };
-        let Candidate { light, weighted, unoccluded, .. } = candidate;
-        let admitted = tracer.scene.controls.as_ref().map_or(Lobes::ALL, |controls| {
-            self.artist.lobes(controls, surface.hit.geometry, bsdf, self.settings.sharp_alpha)
-        });
+        let scattered = self.direct_light(
+            tracer,
+            surface,
+            bsdf,
+            walks_per_light_sample,
+            path,
+            |candidate, through, path| {
+                let admitted = tracer.scene.controls.as_ref().map_or(Lobes::ALL, |controls| {
+                    self.artist.lobes(controls, surface.hit.geometry, bsdf, self.settings.sharp_alpha)
+                });
+                if admitted == Lobes::ALL && path.layers.is_idle() {
+                    return through * candidate.unoccluded;
+                }
+                self.scatter_by_lobes(surface, bsdf, admitted, candidate, through, path.layers)
+            },
+        );
+        if let Some(scattered) = scattered {
+            self.radiance += scattered;
+        }
+    }
+
+    /// What the admitted lobes make of light that reaches the surface; shows each of them to the layers.
+    #[cold]
+    fn scatter_by_lobes(
+        &self,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        admitted: Lobes,
+        Candidate { light, weighted, unoccluded, .. }: &Candidate,
+        through: Sampled,
+        layers: &mut LayerRecorder<'_>,
+    ) -> Sampled {
         let through_lobes = |lobes: Lobes| {
             let wi = light.sample.wi;
             let f = bsdf.eval(surface.wo, wi, TransportMode::Radiance, lobes & admitted) * bsdf.abs_cos(wi);
-            through * (f * weighted)
+            through * (f * *weighted)
         };
-        self.radiance +=
-            if admitted == Lobes::ALL { through * unoccluded } else { through_lobes(Lobes::ALL) };
-        if path.layers.is_idle() {
-            return;
+        if !layers.is_idle() {
+            let (glossy, diffuse) = (through_lobes(Lobes::GLOSSY), through_lobes(Lobes::DIFFUSE));
+            layers.emit_through(Event::glossy(bsdf.glossy_roughness(), self.settings.sharp_alpha), glossy);
+            layers.emit_through(Event::Diffuse, diffuse);
         }
-        let (glossy, diffuse) = (through_lobes(Lobes::GLOSSY), through_lobes(Lobes::DIFFUSE));
-        path.layers.emit_through(Event::glossy(bsdf.glossy_roughness(), self.settings.sharp_alpha), glossy);
-        path.layers.emit_through(Event::Diffuse, diffuse);
+        if admitted == Lobes::ALL { through * *unoccluded } else { through_lobes(Lobes::ALL) }
     }
 
     /// Leaves a surface in a sampled direction.
@@ -445,6 +469,7 @@ impl<'s> Walk<'s> {
         }
     }
 
+    #[inline]
     pub(crate) fn survives_roulette(&mut self, path: &mut CameraPath<'_, '_>) -> bool {
         if self.depth <= self.settings.roulette_depth {
             return true;
