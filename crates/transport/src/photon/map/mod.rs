@@ -11,8 +11,10 @@
 //! Photons are the same, bit for bit and in the same order, for any number of threads.
 
 mod builder;
+mod bytes;
 mod direction;
 mod power;
+mod radius;
 mod record;
 
 #[cfg(test)]
@@ -23,7 +25,10 @@ use etendue_math::{Normal3, Point3};
 use etendue_spectrum::Xyz;
 
 pub use builder::{PhotonMapBuilder, Storing};
+pub use bytes::PhotonMapError;
+
 pub use power::PowerCodec;
+pub use radius::radius_from_scene;
 pub use record::{Photon, StoredPhoton};
 
 use crate::photon::Trail;

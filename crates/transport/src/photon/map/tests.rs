@@ -10,7 +10,7 @@ use crate::photon::Trail;
 
 const UP: Vector3 = Vector3::new(0.0, 1.0, 0.0);
 
-fn photon(position: Point3) -> StoredPhoton {
+pub(super) fn photon(position: Point3) -> StoredPhoton {
     StoredPhoton { position, power: Xyz::new(0.5, 1.0, 0.25), wi: UP, trail: Trail::EMPTY, is_shadow: false }
 }
 
@@ -27,7 +27,7 @@ fn random_photon(rng: &mut Rng) -> StoredPhoton {
     }
 }
 
-fn random_map(n: usize, seed: u64) -> (Vec<StoredPhoton>, PhotonMap) {
+pub(super) fn random_map(n: usize, seed: u64) -> (Vec<StoredPhoton>, PhotonMap) {
     let mut rng = Rng::new(seed, 0);
     let photons: Vec<StoredPhoton> = (0..n).map(|_| random_photon(&mut rng)).collect();
     let map = PhotonMap::from_photons(&photons, 1);
