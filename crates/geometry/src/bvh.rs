@@ -23,6 +23,7 @@ mod wide;
 mod tests;
 
 pub(crate) use build::{Box3, BuildPrimitive, TriangleSource, build};
+pub(crate) use pages::vec_in_large_pages;
 pub(crate) use pair::{append_pairs, second_of};
 pub(crate) use ray::{TraversalRay, WideBounds, WideRay};
 

@@ -12,6 +12,7 @@ mod item;
 
 mod packed;
 mod tree;
+mod wide;
 
 mod grid;
 mod growing_tree;

@@ -7,7 +7,7 @@
 const WORTH_BYTES: usize = 2 << 20;
 
 /// An empty array for so many values, in large pages where it is large and the system has them.
-pub(super) fn vec_in_large_pages<T>(capacity: usize) -> Vec<T> {
+pub(crate) fn vec_in_large_pages<T>(capacity: usize) -> Vec<T> {
     let memory = Vec::with_capacity(capacity);
     if size_of::<T>().saturating_mul(capacity) >= WORTH_BYTES {
         advise_large_pages(&memory);

@@ -14,6 +14,8 @@ use etendue_math::Point3;
 
 use super::found::{Neighbour, Neighbours, square_of_radius};
 use super::item::{Item, finite_items, longest_axis};
+use super::wide;
+use crate::bvh::vec_in_large_pages;
 
 /// Points of a bucket. With 8 questions take 1.15 times as long, and memory is much the same.
 pub(super) const BUCKET: usize = 16;
@@ -42,7 +44,7 @@ struct Split {
 /// Points side by side; missing ones are NaN, which is near to nothing.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-struct Bucket([[f32; BUCKET]; 3]);
+pub(super) struct Bucket(pub(super) [[f32; BUCKET]; 3]);
 
 /// Points that were said to be in the order of a tree are not, or not all of them are finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,7 +114,8 @@ impl PackedPoints {
         let mut items = finite_items(points);
         let n_buckets = items.len().div_ceil(BUCKET);
         let mut splits = vec![Split::default(); n_buckets.saturating_sub(1)];
-        let mut buckets = vec![Bucket::EMPTY; n_buckets];
+        let mut buckets = vec_in_large_pages(n_buckets);
+        buckets.resize(n_buckets, Bucket::EMPTY);
         build(&mut items, &mut splits, &mut buckets);
         let order = items.iter().map(|item| item.index).collect();
         (Self { n_points: items.len() as u32, splits, buckets }, order)
@@ -135,7 +138,8 @@ impl PackedPoints {
         }
         let items: Vec<Item> = points.iter().map(|p| Item { p: [p.x, p.y, p.z], index: 0 }).collect();
         cut_ordered(&items, &mut splits, n_buckets)?;
-        let buckets = items.chunks(BUCKET).map(Bucket::new).collect();
+        let mut buckets = vec_in_large_pages(n_buckets);
+        buckets.extend(items.chunks(BUCKET).map(Bucket::new));
         Ok(Self { n_points: points.len() as u32, splits, buckets })
     }
 
@@ -189,12 +193,24 @@ impl PackedPoints {
         self.search(p, &mut Within { limit_squared: square_of_radius(radius), visit });
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn search(&self, p: Point3, search: &mut impl Search) {
+        if !wide::search(self, [p.x, p.y, p.z], search) {
+            self.search_by([p.x, p.y, p.z], search, Bucket::measure);
+        }
+    }
+
+    /// Visits what is near enough; `measure` is [`Bucket::measure`] or does the same in another way.
+    #[inline(always)]
+    pub(super) fn search_by(
+        &self,
+        p: [f32; 3],
+        search: &mut impl Search,
+        measure: impl Fn(&Bucket, [f32; 3], f32, &mut [f32; BUCKET]) -> u32,
+    ) {
         if self.buckets.is_empty() {
             return;
         }
-        let p = [p.x, p.y, p.z];
         let mut node = Node { first: 0, n_buckets: self.buckets.len() as u32, offset: [0.0; 3] };
         let mut stack = [(node, 0.0); STACK_SIZE];
         let mut n_stacked = 0;
@@ -209,7 +225,16 @@ impl PackedPoints {
                 }
                 node = near;
             }
-            self.buckets[node.first as usize].visit(p, node.first * BUCKET as u32, search);
+            let mut distances = [0.0; BUCKET];
+            let bucket = &self.buckets[node.first as usize];
+            let mut is_near = measure(bucket, p, search.limit_squared(), &mut distances);
+            while is_near != 0 {
+                let lane = is_near.trailing_zeros() as usize % BUCKET;
+                is_near &= is_near - 1;
+                if distances[lane] <= search.limit_squared() {
+                    search.offer(distances[lane], node.first * BUCKET as u32 + lane as u32);
+                }
+            }
             node = loop {
                 if n_stacked == 0 {
                     return;
@@ -277,23 +302,16 @@ impl Bucket {
         bucket
     }
 
+    /// Squares of the distances of all points, and a bit for each that is no farther than the limit.
     #[inline(always)]
-    fn visit(&self, p: [f32; 3], first: u32, search: &mut impl Search) {
+    pub(super) fn measure(&self, p: [f32; 3], limit_squared: f32, distances: &mut [f32; BUCKET]) -> u32 {
         let [xs, ys, zs] = &self.0;
-        let mut distances = [0.0; BUCKET];
-        let mut is_near = 0_u32;
         for lane in 0..BUCKET {
             let (x, y, z) = (xs[lane] - p[0], ys[lane] - p[1], zs[lane] - p[2]);
             distances[lane] = x * x + y * y + z * z;
         }
-        for (lane, distance) in distances.iter().enumerate() {
-            is_near |= u32::from(*distance <= search.limit_squared()) << lane;
-        }
-        while is_near != 0 {
-            let lane = is_near.trailing_zeros() as usize % BUCKET;
-            is_near &= is_near - 1;
-            search.offer(distances[lane], first + lane as u32);
-        }
+        let bit = |(lane, distance): (usize, &f32)| u32::from(*distance <= limit_squared) << lane;
+        distances.iter().enumerate().map(bit).fold(0, |bits, bit| bits | bit)
     }
 }
 
