@@ -49,6 +49,8 @@ fn describe(loaded: &LoadedScene) -> Value {
             "triangles": counts.n_triangles,
             "patches": counts.n_patches,
             "quadrics": counts.n_quadrics,
+            "curves": counts.n_curves,
+            "points": counts.n_points,
             "objects": counts.n_objects,
             "instances": counts.n_instances,
             "memory_bytes": scene.geometry.memory_bytes(),
@@ -154,6 +156,7 @@ const fn kind_name(light: &Light) -> &'static str {
         Light::Sky(_) => "sky",
         Light::Sun(_) => "sun",
         Light::Area(_) => "area",
+        Light::MovingArea(_) => "moving area",
     }
 }
 

@@ -170,8 +170,8 @@ impl Geometry {
         self.entities[geometry.0 as usize].n_primitives()
     }
 
-    /// True if the entity stands still in the world, belongs to no object and is of a shape that can emit
-    /// ([`crate::Shape::can_emit`]), so that it may be a light source.
+    /// True if the entity is of a shape that can emit ([`crate::Shape::can_emit`]), stands still in the world and belongs to no
+    /// object, so that it may be a light source as it is.
     #[must_use]
     pub fn can_emit(&self, geometry: GeometryId) -> bool {
         self.entity_groups[geometry.0 as usize] == WORLD

@@ -44,6 +44,7 @@ pub use hit::{
     GeometryId, Hit, NO_INSTANCE, ObjectId, Reference, ShapeSample, SurfaceDerivatives, SurfacePoint,
 };
 pub use lamp::{FlatLamp, Lamp};
+pub use light_sampling::solid_angle_density;
 pub use mesh::{BilinearMesh, MeshError, TriangleMesh};
 pub use parametric::{ParametricSurface, Tessellation, tessellate};
 pub use refine::{Fractal, MAX_REFINED_TRIANGLES, Refined, TooManyTriangles};

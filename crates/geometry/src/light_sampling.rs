@@ -19,7 +19,8 @@ pub(crate) const SPHERICAL_SAMPLING: std::ops::RangeTo<f32> = ..6.22;
 /// The density per steradian of a point with density `pdf_a` per area, `offset` away with unit normal `n`; 0 where
 /// the surface is seen edge on.
 #[inline]
-pub(crate) fn solid_angle_density(pdf_a: f32, offset: Vector3, n: Normal3) -> f32 {
+#[must_use]
+pub fn solid_angle_density(pdf_a: f32, offset: Vector3, n: Normal3) -> f32 {
     let distance_squared = offset.length_squared();
     let cosine = n.abs_dot_vector(offset) / distance_squared.sqrt();
     let pdf_w = pdf_a * distance_squared / cosine;
@@ -68,6 +69,16 @@ impl Geometry {
     #[must_use]
     pub fn area_pdf(&self, geometry: GeometryId, primitive: u32, p: Point3, n: Normal3) -> f32 {
         self.entity(geometry).area_pdf_at_point(primitive, p, n)
+    }
+
+    /// How far along a ray it first meets a primitive, whatever is before it, and the unit normal there; both in the space in
+    /// which the primitive was added.
+    #[must_use]
+    pub fn meet(&self, geometry: GeometryId, primitive: u32, ray: &Ray) -> Option<(f32, Normal3)> {
+        let entity = self.entity(geometry);
+        let hit = entity.intersect(primitive, ray).into_iter().flatten().next()?;
+        let t = hit.t as f32;
+        Some((t, entity.area_pdf_at_hit(primitive, ray, t, [hit.u, hit.v]).1))
     }
 
     /// A point of a primitive as seen from `reference`, with its density per steradian.

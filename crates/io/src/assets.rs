@@ -63,7 +63,8 @@ enum Loaded {
 ///
 /// Known are the meshes of `plymesh` and `fractal`, contours of `revolution`, the images of `heightfield`,
 /// the images of `imagemap` textures, of lights and of normal maps, measured
-/// spectra, the tables of `tabulated`, the measurements of `measured`, the lenses of `realistic` and the luminaires of `ies`.
+/// spectra, the tables of `tabulated`, the measurements of `measured`, the lenses of `realistic` and the luminaires
+/// of `ies` and of surfaces that emit.
 /// File names are relative to [`Document::base_directory`]; names in [`Document::embedded`] stand for what the document
 /// brings along.
 #[must_use]
@@ -196,6 +197,7 @@ fn wanted_files(document: &Document) -> Wanted {
     for light in document.lights.iter().map(|light| &light.entity).chain(&document.area_lights) {
         let kind = if light.type_name == "ies" { Kind::Luminaire } else { Kind::Image };
         add(&mut wanted, kind, light, "filename");
+        add(&mut wanted, Kind::Luminaire, light, "profile");
         add_spectra(&mut wanted, light);
     }
     for material in &document.materials {

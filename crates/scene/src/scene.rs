@@ -138,15 +138,23 @@ impl Scene {
         self.geometry.bounds()
     }
 
-    /// What lights need of the scene.
+    /// What lights need of the scene, where time does not matter: for their power, or if none moves.
     #[inline]
     #[must_use]
     pub const fn light_context(&self) -> LightContext<'_> {
+        self.light_context_at(0.0)
+    }
+
+    /// What lights need of the scene at a time in seconds.
+    #[inline]
+    #[must_use]
+    pub const fn light_context_at(&self, time: f32) -> LightContext<'_> {
         LightContext {
             geometry: &self.geometry,
             textures: &self.textures,
             spectra: &self.textures.spectra,
             tables: &self.light_tables,
+            time,
         }
     }
 

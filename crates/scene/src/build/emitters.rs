@@ -1,4 +1,5 @@
-//! Emissive shapes of objects: they become shapes of the world, one for each instance, for a light has one place.
+//! Emissive shapes of objects: they become shapes of the world, one for each instance, for a light has one place. Where an
+//! instance moves, they become an object of their own, which is used once.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -6,7 +7,7 @@ use std::collections::HashMap;
 use etendue_math::AnimatedTransform;
 
 use crate::assets::Assets;
-use crate::document::{Document, ShapeEntity, Value};
+use crate::document::{Document, InstanceEntity, ObjectEntity, ShapeEntity, Value};
 
 use super::motion::{FILENAME_1, P1};
 
@@ -20,44 +21,20 @@ const MANY: usize = 100_000;
 const N_SECTORS: usize = 256;
 const N_PIECES: usize = 16;
 
-/// The document with the emissive shapes of its objects in their places in the world. Objects of which an instance moves, and
-/// those with whose copies there would be more than four million primitives, are left as they are, and so are shapes that
-/// move within their object and those that cannot emit: they stay dark, and a warning says so where they are added.
-pub(super) fn place_emitters<'d>(document: &'d Document, assets: &Assets) -> Cow<'d, Document> {
-    let mut uses: HashMap<&str, Uses> = HashMap::new();
-    for instance in &document.instances {
-        let uses = uses.entry(&instance.object).or_default();
-        uses.n += 1;
-        uses.is_moving |= instance.world_from_instance.is_animated();
-    }
-    let mut n_primitives = 0_usize;
-    let mut emitters: HashMap<&str, Vec<&ShapeEntity>> = HashMap::new();
-    for object in &document.objects {
-        let uses = uses.get(object.name.as_str()).copied().unwrap_or_default();
-        let found: Vec<&ShapeEntity> = object.shapes.iter().filter(|shape| is_emitter(shape)).collect();
-        if uses.is_moving || found.is_empty() || emitters.contains_key(object.name.as_str()) {
-            continue;
-        }
-        let n_each =
-            found.iter().fold(0, |n: usize, shape| n.saturating_add(count_primitives(shape, assets)));
-        let n_with = n_primitives.saturating_add(n_each.saturating_mul(uses.n));
-        if n_with <= MAX_PRIMITIVES {
-            n_primitives = n_with;
-            emitters.insert(&object.name, found);
-        }
-    }
-    let placed = document.instances.iter().flat_map(|instance| {
-        let place = instance.world_from_instance.start;
-        emitters.get(instance.object.as_str()).into_iter().flatten().map(move |shape| (place, *shape))
-    });
-    let copies: Vec<ShapeEntity> = placed
-        .map(|(place, shape)| ShapeEntity {
-            world_from_object: AnimatedTransform::constant(place * shape.world_from_object.start),
-            ..shape.clone()
-        })
-        .collect();
-    if copies.is_empty() {
-        return Cow::Borrowed(document);
+/// A document with the emissive shapes of its objects in their places.
+pub(super) struct Placed<'d> {
+    pub(super) document: Cow<'d, Document>,
+    /// Objects that are used once, by a moving instance, whose shapes can therefore be lights: index of the instance.
+    pub(super) moving: HashMap<String, usize>,
+}
+
+/// Puts the emissive shapes of objects in their places. Objects with whose copies there would be more than four million primitives
+/// are left as they are, and so are shapes that move within their object and those that cannot emit: they stay dark, and a
+/// warning says so where they are added.
+pub(super) fn place_emitters<'d>(document: &'d Document, assets: &Assets) -> Placed<'d> {
+    let emitters = emitters_by_object(document, assets);
+    if emitters.is_empty() {
+        return Placed { document: Cow::Borrowed(document), moving: HashMap::new() };
     }
     let mut changed = document.clone();
     for object in &mut changed.objects {
@@ -65,15 +42,49 @@ pub(super) fn place_emitters<'d>(document: &'d Document, assets: &Assets) -> Cow
             object.shapes.retain(|shape| !is_emitter(shape));
         }
     }
-    changed.shapes.extend(copies);
-    Cow::Owned(changed)
+    let mut moving = HashMap::new();
+    for (index, instance) in document.instances.iter().enumerate() {
+        let Some(shapes) = emitters.get(instance.object.as_str()) else { continue };
+        let place = &instance.world_from_instance;
+        if place.is_animated() {
+            let (name, span) = (format!("{}\u{1f}{index}", instance.object), instance.span);
+            moving.insert(name.clone(), changed.instances.len());
+            changed.instances.push(InstanceEntity { object: name.clone(), ..instance.clone() });
+            let shapes = shapes.iter().copied().cloned().collect();
+            changed.objects.push(ObjectEntity { name, span, shapes });
+            continue;
+        }
+        changed.shapes.extend(shapes.iter().map(|shape| ShapeEntity {
+            world_from_object: AnimatedTransform::constant(place.start * shape.world_from_object.start),
+            ..(*shape).clone()
+        }));
+    }
+    Placed { document: Cow::Owned(changed), moving }
 }
 
-/// How an object is used.
-#[derive(Clone, Copy, Debug, Default)]
-struct Uses {
-    n: usize,
-    is_moving: bool,
+/// The emissive shapes of objects that are used, as long as there are not too many.
+fn emitters_by_object<'d>(document: &'d Document, assets: &Assets) -> HashMap<&'d str, Vec<&'d ShapeEntity>> {
+    let mut n_uses: HashMap<&str, usize> = HashMap::new();
+    for instance in &document.instances {
+        *n_uses.entry(&instance.object).or_default() += 1;
+    }
+    let mut n_primitives = 0_usize;
+    let mut emitters: HashMap<&str, Vec<&ShapeEntity>> = HashMap::new();
+    for object in &document.objects {
+        let n_uses = n_uses.get(object.name.as_str()).copied().unwrap_or(0);
+        let found: Vec<&ShapeEntity> = object.shapes.iter().filter(|shape| is_emitter(shape)).collect();
+        if n_uses == 0 || found.is_empty() || emitters.contains_key(object.name.as_str()) {
+            continue;
+        }
+        let n_each =
+            found.iter().fold(0, |n: usize, shape| n.saturating_add(count_primitives(shape, assets)));
+        let n_with = n_primitives.saturating_add(n_each.saturating_mul(n_uses));
+        if n_with <= MAX_PRIMITIVES {
+            n_primitives = n_with;
+            emitters.insert(&object.name, found);
+        }
+    }
+    emitters
 }
 
 /// True for a shape that emits where it stands in the world.

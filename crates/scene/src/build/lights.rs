@@ -4,7 +4,8 @@ use etendue_geometry::Geometry;
 
 use crate::document::Value;
 use crate::light::{
-    AreaLight, Light, LightContext, LightId, LightSampler, LightSamplerKind, LightTables, SceneSphere,
+    AreaLight, Light, LightContext, LightId, LightSampler, LightSamplerKind, LightTables, MovingAreaLight,
+    SceneSphere, placed_area,
 };
 use crate::scene::ShapeLights;
 use crate::texture::FloatTexture;
@@ -36,7 +37,8 @@ impl Builder<'_, '_> {
         let infinite = ids().filter(|id| lights[id.0 as usize].is_environment()).collect();
         let kind = self.light_sampler_kind();
         let textures = &self.textures;
-        let context = LightContext { geometry, textures, spectra: &self.context.spectra, tables: &tables };
+        let context =
+            LightContext { geometry, textures, spectra: &self.context.spectra, tables: &tables, time: 0.0 };
         let sampler = LightSampler::new(kind, &lights, &context);
         BuiltLights { lights, tables, infinite, sampler }
     }
@@ -50,9 +52,16 @@ impl Builder<'_, '_> {
         lights: &mut Vec<Light>,
     ) {
         let id = emitter.geometry;
-        debug_assert!(geometry.can_emit(id), "moving and instanced shapes are refused when shapes are added");
+        debug_assert!(
+            geometry.can_emit(id) || emitter.motion.is_some(),
+            "instances are refused when shapes are added"
+        );
         let primitives = 0..geometry.n_primitives(id);
-        let area: f64 = primitives.clone().map(|primitive| f64::from(geometry.area(id, primitive))).sum();
+        let area_of = |primitive| match &emitter.motion {
+            None => geometry.area(id, primitive),
+            Some(motion) => placed_area(geometry, id, primitive, &motion.ends().start),
+        };
+        let area: f64 = primitives.clone().map(|primitive| f64::from(area_of(primitive))).sum();
         let entity = &self.document.area_lights[emitter.area_light];
         let attributes = &mut self.attributes[id.0 as usize];
         let alpha = attributes.alpha.unwrap_or(FloatTexture::Constant(1.0));
@@ -60,6 +69,14 @@ impl Builder<'_, '_> {
             return;
         };
         let next = LightId(lights.len() as u32);
+        if let Some(motion) = emitter.motion {
+            let motion = tables.add_motion(*motion);
+            let light = |primitive| MovingAreaLight::new(id, primitive, emission, motion, tables);
+            attributes.lights = Some(ShapeLights::each(next));
+            lights.extend(primitives.map(light).map(Light::MovingArea));
+            self.controls.add_lights(entity, lights.len() - next.0 as usize);
+            return;
+        }
         if let Some(light) = AreaLight::joined(geometry, id, emission, tables) {
             attributes.lights = Some(ShapeLights::whole(next));
             lights.push(Light::Area(light));

@@ -39,6 +39,7 @@ pub use film::{FILMS, SAMPLERS};
 pub use meshes::{MESH_FILE_PARAMETERS, MESH_FILES};
 pub use shapes::SHAPES;
 
+use emitters::Placed;
 use meshes::MeshStore;
 use shapes::{Emitter, Target};
 
@@ -53,6 +54,8 @@ struct Builder<'d, 'a> {
     named_materials: HashMap<String, MaterialId>,
     attributes: Vec<ShapeAttributes>,
     emitters: Vec<Emitter>,
+    /// Objects whose shapes can be lights, with the index of the instance that moves them.
+    moving: HashMap<String, usize>,
     controls: ControlsBuilder,
 }
 
@@ -62,7 +65,7 @@ impl Scene {
     /// There is a scene unless a diagnostic is an error.
     #[must_use]
     pub fn build(document: &Document, mut assets: Assets) -> (Option<Self>, Diagnostics) {
-        let document = emitters::place_emitters(document, &assets);
+        let Placed { document, moving } = emitters::place_emitters(document, &assets);
         let document = document.as_ref();
         let loaded = std::mem::take(&mut assets.meshes);
         let mut builder = Builder {
@@ -74,6 +77,7 @@ impl Scene {
             named_materials: HashMap::new(),
             attributes: Vec::new(),
             emitters: Vec::new(),
+            moving,
             controls: ControlsBuilder::default(),
         };
         let lights = document.lights.iter().map(|light| &light.entity).chain(&document.area_lights);
@@ -142,7 +146,11 @@ impl Builder<'_, '_> {
         for object in &document.objects {
             let id = geometry.begin_object();
             objects.insert(&object.name, id);
-            self.add_shapes(&object.shapes, Target::Object(id), &mut geometry, meshes);
+            let target = match self.moving.get(&object.name) {
+                Some(instance) => Target::Moving(id, *instance),
+                None => Target::Object(id),
+            };
+            self.add_shapes(&object.shapes, target, &mut geometry, meshes);
         }
         for instance in &document.instances {
             if let Some(object) = self.find_object(&objects, instance) {

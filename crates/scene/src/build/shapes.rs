@@ -1,6 +1,7 @@
 //! Shapes: from entities to geometry, with the attributes that geometry does not know.
 
 use etendue_geometry::{CurveSet, GeometryBuilder, GeometryId, ObjectId, Shape};
+use etendue_math::Motion;
 
 use crate::controls::SHAPE_CONTROLS;
 use crate::document::{Document, MaterialReference, ShapeEntity, Value};
@@ -118,14 +119,18 @@ pub(super) enum Target {
     World,
     /// An object that instances repeat.
     Object(ObjectId),
+    /// An object that is used once, by the moving instance of that index.
+    Moving(ObjectId, usize),
 }
 
 /// A geometry that emits, to be made a light once the geometry is built.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Emitter {
     pub(super) geometry: GeometryId,
     /// Index into the document's area lights.
     pub(super) area_light: usize,
+    /// From the space of the geometry to the world, if it moves.
+    pub(super) motion: Option<Box<Motion>>,
 }
 
 impl Builder<'_, '_> {
@@ -200,7 +205,7 @@ impl Builder<'_, '_> {
         self.check_motion(entity, target);
         let id = match target {
             Target::World => geometry.add(shape, &entity.world_from_object, entity.reverse_orientation),
-            Target::Object(object) => {
+            Target::Object(object) | Target::Moving(object, _) => {
                 let transform = entity.world_from_object.start;
                 geometry.add_to_object(object, shape, &transform, entity.reverse_orientation)
             }
@@ -213,7 +218,12 @@ impl Builder<'_, '_> {
         self.controls.add_shape(controls);
         self.attributes.push(ShapeAttributes { material, alpha, lights: None });
         if let Some(area_light) = emits {
-            self.emitters.push(Emitter { geometry: id, area_light });
+            let place = match target {
+                Target::Moving(_, instance) => &self.document.instances[instance].world_from_instance,
+                Target::World | Target::Object(_) => &entity.world_from_object,
+            };
+            let motion = place.is_animated().then(|| Box::new(place.motion()));
+            self.emitters.push(Emitter { geometry: id, area_light, motion });
         }
     }
 
@@ -242,8 +252,6 @@ impl Builder<'_, '_> {
         let area_light = entity.area_light?;
         let (problem, help) = if matches!(target, Target::Object(_)) {
             ("shapes of an object cannot be lights", "place the shape outside of ObjectBegin and ObjectEnd")
-        } else if entity.world_from_object.is_animated() {
-            ("a moving shape cannot be a light", "make it stand still")
         } else if !can_emit {
             (
                 "implicit surfaces, meshes that deform, curves and points cannot be lights",
@@ -263,7 +271,7 @@ impl Builder<'_, '_> {
     }
 
     fn check_motion(&mut self, entity: &ShapeEntity, target: Target) {
-        if matches!(target, Target::Object(_)) && entity.world_from_object.is_animated() {
+        if !matches!(target, Target::World) && entity.world_from_object.is_animated() {
             let message = "shapes of an object cannot move within it; this one stays where it starts";
             self.context.diagnostics.warning(entity.entity.span, message);
         }

@@ -7,6 +7,7 @@ mod lights;
 mod materials;
 mod meshes;
 mod motion;
+mod moving_lights;
 mod point_cloud;
 mod revolution;
 mod settings;

@@ -1,6 +1,7 @@
 //! Lights from the entities of a document.
 
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 use etendue_image::{DecodeTable, Encoding, Texels};
 use etendue_math::{Point2, Transform, Vector3, warp};
@@ -11,8 +12,8 @@ use super::image::weighted_mean;
 use super::{
     AreaEmission, AreaEmissionId, DistantLight, GoniometricLight, GoniometricLightId, IesLight, IesLightId,
     InfiniteConstantLight, InfiniteImageLight, InfiniteImageLightId, InfinitePortalLight,
-    InfinitePortalLightId, Light, LightTables, PointLight, ProjectionLight, ProjectionLightId, SkyLightId,
-    SpotLight, sky::SkySettings,
+    InfinitePortalLightId, Light, LightTables, Photometry, PointLight, ProjectionLight, ProjectionLightId,
+    SkyLightId, SpotLight, sky::SkySettings,
 };
 use crate::document::{Entity, LightEntity};
 use crate::parameters::{BuildContext, ParameterSpec, Parameters, SpectrumRole};
@@ -270,6 +271,14 @@ impl Source {
     }
 }
 
+impl Source {
+    /// The emission, made so strong that its luminance is `nits` times `scale`.
+    pub(super) fn with_luminance(&self, p: &Parameters, nits: f64) -> Spectrum {
+        let own = LightPower::of(&self.unit, &p.context.spectra).lumens;
+        self.unit.scaled(if own > 0.0 { (f64::from(self.scale) * nits / own) as f32 } else { 0.0 })
+    }
+}
+
 /// `scale` and `units`.
 fn read_scale(p: &mut Parameters) -> (f32, LightUnits) {
     let units = p.choice("units", "photometric", &LightUnits::NAMES);
@@ -454,4 +463,19 @@ pub(super) fn direction(p: &mut Parameters, name: &'static str, v: Vector3) -> O
         p.diagnostics().error(span, "\"from\" and \"to\" of a light must differ");
     }
     direction
+}
+
+/// The luminaire that a parameter names; problems are reported.
+pub(super) fn read_photometry(p: &mut Parameters, name: &'static str) -> Option<Arc<Photometry>> {
+    let span = p.span_of(name);
+    let Some(filename) = p.string_opt(name).filter(|name| !name.is_empty()) else {
+        p.missing(name, format!("a {} light needs \"{name}\"", p.entity().type_name));
+        return None;
+    };
+    let assets = p.context.assets;
+    let found = assets.luminaires.get(&filename).cloned();
+    if found.is_none() && !assets.failed.contains(&filename) {
+        p.diagnostics().error(span, format!("the photometric file \"{filename}\" was not loaded"));
+    }
+    found
 }

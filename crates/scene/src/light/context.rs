@@ -1,14 +1,14 @@
 //! What lights need to know besides themselves, and what they answer.
 
 use etendue_geometry::{Geometry, Reference};
-use etendue_math::{Bounds3, Frame, Normal3, Point2, Point3, Ray, Vector3, warp};
+use etendue_math::{Bounds3, Frame, Motion, Normal3, Point2, Point3, Ray, Vector3, warp};
 use etendue_spectrum::{Sampled, SpectrumTables};
 
 use crate::texture::Textures;
 
 use super::{
     AreaEmission, GoniometricLight, IesLight, InfiniteImageLight, InfinitePortalLight, LightImage,
-    LightImageId, ProjectionLight, SkyLight,
+    LightImageId, LightMotionId, LuminousProfile, LuminousProfileId, ProjectionLight, SkyLight,
 };
 
 /// A sphere around the scene: lights at infinity shine on its cross-section.
@@ -72,6 +72,10 @@ pub struct LightTables {
     pub skies: Vec<SkyLight>,
     /// What emissive surfaces emit, shared by their primitives.
     pub emissions: Vec<AreaEmission>,
+    /// How the radiance of some of them depends on direction.
+    pub profiles: Vec<LuminousProfile>,
+    /// How emissive surfaces move, shared likewise.
+    pub motions: Vec<Motion>,
     /// The sphere around the scene; to be set before any light at infinity is used.
     pub scene_sphere: SceneSphere,
 }
@@ -81,6 +85,24 @@ impl LightTables {
     pub fn add_image(&mut self, image: LightImage) -> LightImageId {
         self.images.push(image);
         LightImageId(self.images.len() as u32 - 1)
+    }
+
+    /// Adds a profile.
+    pub fn add_profile(&mut self, profile: LuminousProfile) -> LuminousProfileId {
+        self.profiles.push(profile);
+        LuminousProfileId(self.profiles.len() as u32 - 1)
+    }
+
+    /// The profile of that id.
+    #[must_use]
+    pub fn profile(&self, id: LuminousProfileId) -> &LuminousProfile {
+        &self.profiles[id.0 as usize]
+    }
+
+    /// Adds a motion.
+    pub fn add_motion(&mut self, motion: Motion) -> LightMotionId {
+        self.motions.push(motion);
+        LightMotionId(self.motions.len() as u32 - 1)
     }
 
     /// The picture of that id.
@@ -102,6 +124,8 @@ pub struct LightContext<'a> {
     pub spectra: &'a SpectrumTables,
     /// Arenas of lights.
     pub tables: &'a LightTables,
+    /// Time in seconds, for lights that move.
+    pub time: f32,
 }
 
 /// A point on a light, from where a shadow ray may start as well.

@@ -125,7 +125,7 @@ impl IesLight {
         let power = p.float("power", -1.0);
         let colour =
             p.spectrum("I", SpectrumRole::Illuminant).unwrap_or_else(|| build::default_illuminant(p));
-        let photometry = read_photometry(p)?;
+        let photometry = build::read_photometry(p, "filename")?;
         let colour = super::emission::emitted(colour, 1.0, LightUnits::Photometric, &p.context.spectra);
         let luminance = LightPower::of(&colour, &p.context.spectra).lumens;
         let unit = colour.scaled(if luminance > 0.0 { (1.0 / luminance) as f32 } else { 0.0 });
@@ -205,19 +205,4 @@ impl IesLight {
         let intensity = LightPower::of(&self.intensity, context.spectra).weight * f64::from(self.peak);
         Some(LightBounds::point(Bounds3::new(self.p, self.p), intensity))
     }
-}
-
-/// The table that `filename` names; problems are reported.
-fn read_photometry(p: &mut Parameters) -> Option<Arc<Photometry>> {
-    let span = p.span_of("filename");
-    let Some(filename) = p.string_opt("filename").filter(|name| !name.is_empty()) else {
-        p.missing("filename", "an ies light needs \"filename\"");
-        return None;
-    };
-    let assets = p.context.assets;
-    let found = assets.luminaires.get(&filename).cloned();
-    if found.is_none() && !assets.failed.contains(&filename) {
-        p.diagnostics().error(span, format!("the photometric file \"{filename}\" was not loaded"));
-    }
-    found
 }

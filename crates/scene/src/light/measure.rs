@@ -44,6 +44,9 @@ impl Light {
                 ("mean radiance", RADIANCE, self.power(context) * (1.0 / (sphere * area)))
             }
             Self::Area(light) => ("mean radiance along the normal", RADIANCE, light.mean_radiance(context)),
+            Self::MovingArea(light) => {
+                ("mean radiance along the normal", RADIANCE, light.mean_radiance(context))
+            }
             Self::Projection(_) | Self::InfinitePortal(_) => return None,
         };
         Some(LightMeasure { name, units, value })

@@ -15,7 +15,7 @@
 //! y-bar is luminance in cd/m^2 (see [`emission`]). Lights follow pbrt-v4 (Pharr, Jakob and Humphreys 2023,
 //! "Physically Based Rendering", 4th ed., chapter 12) in names, geometry and scaling.
 //!
-//! Lights stand still: a moving light transform is used at its start.
+//! Surfaces that emit may move ([`MovingAreaLight`]); other lights stand still, where their transform starts.
 //!
 //! # To add a light
 //! 1. Write its file with a plain struct, the inherent methods of its neighbours (`sample_li`, `pdf_li`, `power`,
@@ -52,7 +52,11 @@ mod measure;
 
 mod build;
 
-pub use area::{AreaEmission, AreaEmissionId, AreaLight};
+pub(crate) use area::placed_area;
+pub use area::{
+    AreaEmission, AreaEmissionId, AreaLight, LightMotionId, LuminousProfile, LuminousProfileId,
+    MovingAreaLight,
+};
 pub use bounds::LightBounds;
 pub use build::LightKind;
 pub use context::{EmittedRay, LightContext, LightPoint, LightSample, LightTables, SceneSphere};
@@ -113,6 +117,8 @@ pub enum Light {
     Sun(SunLight),
     /// One primitive of an emissive shape.
     Area(AreaLight),
+    /// One primitive of an emissive shape that moves.
+    MovingArea(MovingAreaLight),
 }
 
 /// Calls the same method on whatever a light is, looked up in the tables where only an id is held.
@@ -149,6 +155,7 @@ macro_rules! dispatch {
             }
             Light::Sun($it) => $call,
             Light::Area($it) => $call,
+            Light::MovingArea($it) => $call,
         }
     };
 }
@@ -187,6 +194,7 @@ impl Light {
     ) -> f32 {
         match self {
             Self::Area(light) => light.pdf_li_at(context, reference, p, ng),
+            Self::MovingArea(light) => light.pdf_li_at(context, reference, p, ng),
             _ => self.pdf_li(context, reference, wi),
         }
     }
@@ -228,6 +236,7 @@ impl Light {
     ) -> Sampled {
         match self {
             Self::Area(light) => light.le(context, ng, uv, wo, lambda),
+            Self::MovingArea(light) => light.le(context, ng, uv, wo, lambda),
             _ => Sampled::ZERO,
         }
     }
@@ -280,6 +289,7 @@ impl Light {
             | Self::Sky(_)
             | Self::Sun(_) => false,
             Self::Area(light) => !light.is_visible(),
+            Self::MovingArea(light) => !light.is_visible(),
         }
     }
 

@@ -15,7 +15,7 @@
 
 use std::f64::consts::PI;
 
-use etendue_math::Vector3;
+use etendue_math::{Frame, Vector3};
 
 /// A photometric web.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,6 +75,30 @@ impl Photometry {
             candela.extend_from_within(..vertical.len());
         }
         Ok(Self { web, vertical, horizontal, candela })
+    }
+
+    /// Where the luminaire looks, in the light's space: down for type C, ahead for types A and B.
+    #[must_use]
+    pub const fn axis(&self) -> Vector3 {
+        match self.web {
+            PhotometricWeb::C => Vector3::new(0.0, 0.0, -1.0),
+            PhotometricWeb::A | PhotometricWeb::B => Vector3::new(1.0, 0.0, 0.0),
+        }
+    }
+
+    /// True if intensity depends on the angle around the axis by more than this share of the largest intensity.
+    #[must_use]
+    pub fn varies_around_axis(&self, share: f32) -> bool {
+        let frame = Frame::from_z(self.axis());
+        let around = |theta: f32| {
+            let range = (0..72).map(|i| {
+                let (y, x) = (i as f32 * 5.0).to_radians().sin_cos();
+                self.intensity(frame.to_world(Vector3::new(theta.sin() * x, theta.sin() * y, theta.cos())))
+            });
+            range.fold([f32::INFINITY, 0.0], |[low, high]: [f32; 2], i| [low.min(i), high.max(i)])
+        };
+        let ranges = (0..18).map(|i| around((5.0 * i as f32 + 2.5).to_radians()));
+        ranges.into_iter().any(|[low, high]| high - low > share * self.peak())
     }
 
     /// Luminous intensity in candela in a unit direction of the light's space.

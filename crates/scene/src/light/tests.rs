@@ -5,6 +5,7 @@ mod bands;
 mod build;
 mod fields;
 mod luminaire;
+mod profiled;
 mod sampler;
 mod units;
 
@@ -85,6 +86,7 @@ impl World {
             textures: &self.textures,
             spectra: &self.spectra,
             tables: &self.tables,
+            time: 0.0,
         }
     }
 

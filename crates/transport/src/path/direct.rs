@@ -105,7 +105,8 @@ fn sample_light(
     if scene.controls.as_ref().is_some_and(|controls| !controls.reaches(light, surface.hit.geometry)) {
         return None;
     }
-    let sample = scene.light(light).sample_li(&scene.light_context(), &reference, u, lambda)?;
+    let sample =
+        scene.light(light).sample_li(&scene.light_context_at(surface.time), &reference, u, lambda)?;
     let pdf_w = pmf * sample.pdf_w;
     (pdf_w > 0.0 && !sample.le.is_black()).then_some(DirectLight { sample, pdf_w })
 }

@@ -328,7 +328,7 @@ impl<'s> Walk<'s> {
         if le.is_black() {
             return;
         }
-        let context = scene.light_context();
+        let context = scene.light_context_at(surface.time);
         let light = scene.light(id);
         let weight = self.scattering_weight(scene, id, |reference| {
             light.pdf_li_at(&context, reference, self.ray.direction, surface.point.p, surface.point.ng)

@@ -64,8 +64,8 @@ impl PhotonEmitter {
         let u_position = numbers.next_2d();
         let (index, pmf, _) = self.lights.as_ref()?.sample(numbers.next_1d());
         let light = LightId(index as u32);
-        let emitted =
-            scene.light(light).sample_le(&scene.light_context(), u_position, u_direction, lambda)?;
+        let context = scene.light_context_at(time);
+        let emitted = scene.light(light).sample_le(&context, u_position, u_direction, lambda)?;
         let density = emitted.pdf_a * emitted.pdf_w * pmf;
         let flux = emitted.le * (emitted.cosine / density);
         if flux.is_black() || !flux.is_finite() {

@@ -41,6 +41,8 @@ fn every_kind_of_light_reads_what_it_documents() {
             let world = if kind == LightKind::Diffuse {
                 let mut assets = Assets::default();
                 assets.images.insert("map".to_owned(), Arc::new(grey_picture(4)));
+                let table = Photometry::new(PhotometricWeb::C, vec![0.0, 90.0], vec![0.0], vec![1.0, 2.0]);
+                assets.luminaires.insert("map".to_owned(), Arc::new(table.expect("the table is right")));
                 let sphere = Shape::Sphere {
                     radius: 1.0,
                     z_min: -1.0,
