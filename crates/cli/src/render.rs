@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use etendue::io::checkpoint::read_checkpoint;
 use etendue::scene::{Film, Scene};
 use etendue::transport::lpe::PathExpressions;
-use etendue::transport::{Integrator, Outcome, Stop, method_name, render};
+use etendue::transport::{Integrator, Outcome, Stop, method_name, render, with_own_layers};
 
 use crate::args::{RenderArguments, WavelengthArgument};
 use crate::failure::{Failure, Result};
@@ -83,7 +83,6 @@ fn prepare(arguments: &RenderArguments) -> Result<Job> {
     };
     let layers = layers(arguments);
     let expressions = PathExpressions::new(&layers).map_err(|error| Failure::Usage(error.to_string()))?;
-    let names = expressions.names().to_vec();
     outputs::check_images(&arguments.outputs)?;
     let others = || arguments.checkpoint.iter().chain(&arguments.stats);
     for path in others() {
@@ -92,7 +91,8 @@ fn prepare(arguments: &RenderArguments) -> Result<Job> {
     outputs::check_distinct(std::iter::once(&arguments.scene).chain(&arguments.outputs).chain(others()))?;
 
     let LoadedScene { document, mut scene, integrator, .. } =
-        load(&arguments.scene, &overrides, expressions, arguments.quiet)?;
+        load(&arguments.scene, &overrides, expressions.clone(), arguments.quiet)?;
+    let names = with_own_layers(&scene.integrator, expressions).names().to_vec();
     if let Some(seed) = arguments.seed {
         scene.sampler.seed = seed;
     }

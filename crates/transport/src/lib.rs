@@ -14,7 +14,7 @@ pub mod render;
 pub mod whitted;
 
 pub use integrator::{Control, Integrator, PassEnd, Passes, RayCounts, ReportEntry};
-pub use method::{INTEGRATORS, method, method_name};
+pub use method::{INTEGRATORS, method, method_name, with_own_layers};
 pub use render::{Flow, Observer, Outcome, Stop, Unobserved, render};
 
 #[cfg(test)]

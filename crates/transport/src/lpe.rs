@@ -26,6 +26,10 @@ pub const SHARP_ALPHA: f32 = 0.1;
 /// The most expressions that one render can have.
 pub const MAX_EXPRESSIONS: usize = 32;
 
+/// The most layers that a method fills by itself.
+const MAX_OWN_LAYERS: usize = 4;
+const MAX_LAYERS: usize = MAX_EXPRESSIONS + MAX_OWN_LAYERS;
+
 /// Names that layers cannot have, since films have channels of these names.
 const RESERVED_NAMES: [&str; 7] = ["Albedo", "N", "Ns", "P", "depth", "sums", "variance"];
 
@@ -209,6 +213,8 @@ fn translate(expression: &str) -> Result<String, String> {
 pub struct PathExpressions {
     names: Vec<String>,
     expressions: Vec<PathExpression>,
+    /// The places of the method's own layers among the names; `None` for those whose name an expression has.
+    own: Vec<Option<usize>>,
 }
 
 impl PathExpressions {
@@ -240,6 +246,23 @@ impl PathExpressions {
         Ok(result)
     }
 
+    /// The same with layers that a method fills by itself; where an expression has the name of one, it is the expression that
+    /// counts.
+    #[must_use]
+    pub fn with_own_layers(mut self, names: &[&str]) -> Self {
+        debug_assert!(names.len() <= MAX_OWN_LAYERS);
+        self.names.truncate(self.expressions.len());
+        self.own.clear();
+        for name in names {
+            let is_new = !self.names.iter().any(|other| other == name);
+            self.own.push(is_new.then_some(self.names.len()));
+            if is_new {
+                self.names.push((*name).to_owned());
+            }
+        }
+        self
+    }
+
     /// Names of the layers.
     #[must_use]
     pub fn names(&self) -> &[String] {
@@ -257,8 +280,10 @@ impl PathExpressions {
     pub fn recorder(&self) -> LayerRecorder<'_> {
         let mut recorder = LayerRecorder {
             expressions: &self.expressions,
+            own: &self.own,
+            n_layers: self.names.len(),
             states: [StateID::ZERO; MAX_EXPRESSIONS],
-            radiance: [Sampled::ZERO; MAX_EXPRESSIONS],
+            radiance: [Sampled::ZERO; MAX_LAYERS],
         };
         recorder.restart();
         recorder
@@ -273,8 +298,11 @@ pub struct PathPosition([StateID; MAX_EXPRESSIONS]);
 #[derive(Clone, Debug)]
 pub struct LayerRecorder<'e> {
     expressions: &'e [PathExpression],
+    own: &'e [Option<usize>],
+    n_layers: usize,
     states: [StateID; MAX_EXPRESSIONS],
-    radiance: [Sampled; MAX_EXPRESSIONS],
+    /// Layers by expression come first.
+    radiance: [Sampled; MAX_LAYERS],
 }
 
 impl LayerRecorder<'_> {
@@ -289,8 +317,8 @@ impl LayerRecorder<'_> {
     pub fn restart(&mut self) {
         for (index, expression) in self.expressions.iter().enumerate() {
             self.states[index] = expression.automaton.next_state(expression.start, b'E');
-            self.radiance[index] = Sampled::ZERO;
         }
+        self.radiance[..self.n_layers].fill(Sampled::ZERO);
     }
 
     /// How far the path has come, to go on from there several times.
@@ -330,15 +358,41 @@ impl LayerRecorder<'_> {
         }
     }
 
+    /// The path so far, continued by one event and by those of a photon, from its end back to its light, brings this radiance.
+    pub fn emit_trail(
+        &mut self,
+        event: Event,
+        trail: impl Iterator<Item = Event> + Clone,
+        radiance: Sampled,
+    ) {
+        for (index, expression) in self.expressions.iter().enumerate() {
+            let state = expression.automaton.next_state(self.states[index], event.byte());
+            let state = trail
+                .clone()
+                .fold(state, |state, event| expression.automaton.next_state(state, event.byte()));
+            if expression.accepts_light(state) {
+                self.radiance[index] += radiance;
+            }
+        }
+    }
+
+    /// Adds to one of the method's own layers.
+    #[inline]
+    pub fn add_own(&mut self, index: usize, radiance: Sampled) {
+        if let Some(Some(place)) = self.own.get(index) {
+            self.radiance[*place] += radiance;
+        }
+    }
+
     /// Radiance of each layer.
     #[must_use]
     pub fn radiance(&self) -> &[Sampled] {
-        &self.radiance[..self.expressions.len()]
+        &self.radiance[..self.n_layers]
     }
 
     /// Multiplies the radiance of each layer, as by the weight of the camera.
     pub fn scale(&mut self, factor: f32) {
-        for radiance in &mut self.radiance[..self.expressions.len()] {
+        for radiance in &mut self.radiance[..self.n_layers] {
             *radiance *= factor;
         }
     }

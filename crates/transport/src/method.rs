@@ -2,7 +2,7 @@
 
 use etendue_scene::Assets;
 use etendue_scene::diagnostics::{Diagnostics, nearest_name};
-use etendue_scene::document::Entity;
+use etendue_scene::document::{Entity, Parameter, Value};
 use etendue_scene::parameters::{BuildContext, ParameterSpec, Parameters};
 
 use crate::ambient_occlusion::{AmbientOcclusion, OcclusionSettings};
@@ -10,6 +10,8 @@ use crate::integrator::Integrator;
 use crate::light_tracing::{LightSettings, LightTracer};
 use crate::lpe::PathExpressions;
 use crate::path_tracing::{PathSettings, PathTracer};
+use crate::photon::direct_view::{DirectView, DirectViewSettings};
+use crate::photon::mapping::{MappingSettings, PhotonMapping, TERM_NAMES};
 use crate::photon::progressive::{Progressive, ProgressiveSettings};
 use crate::whitted::{Whitted, WhittedSettings};
 
@@ -36,6 +38,20 @@ pub const INTEGRATORS: &[MethodSpec] = &[
         unbiased: true,
         consistent: true,
         parameters: PathSettings::PARAMETERS,
+    },
+    MethodSpec {
+        name: "photonmap",
+        doc: "photon mapping in two passes: direct light and mirrors by rays, caustics and indirect light by photon maps",
+        unbiased: false,
+        consistent: true,
+        parameters: MappingSettings::PARAMETERS,
+    },
+    MethodSpec {
+        name: "photons",
+        doc: "photons seen directly: quick and blurred; caustics alone, or all that is not direct light",
+        unbiased: false,
+        consistent: true,
+        parameters: DirectViewSettings::PARAMETERS,
     },
     MethodSpec {
         name: "whitted",
@@ -85,18 +101,7 @@ const ALIASES: &[(&str, &str)] = &[
 ];
 
 /// Methods that scene files name and that are still to come.
-const COMING: &[&str] = &[
-    "aov",
-    "bdpt",
-    "distribution",
-    "function",
-    "mlt",
-    "pathmlt",
-    "photonmap",
-    "photons",
-    "radiosity",
-    "vcm",
-];
+const COMING: &[&str] = &["aov", "bdpt", "distribution", "function", "mlt", "pathmlt", "radiosity", "vcm"];
 
 /// Parameters of pbrt's `simplepath` that choose what ours always does.
 const FOREIGN_PARAMETERS: &[&str] = &["samplebsdf", "samplelights"];
@@ -132,6 +137,8 @@ pub fn method(entity: &Entity, expressions: PathExpressions) -> (Option<Box<dyn 
     let mut p = Parameters::new(entity, &mut context);
     let integrator: Box<dyn Integrator> = match method_name(name) {
         "ao" => read_occlusion(&mut p, expressions),
+        "photonmap" => Box::new(PhotonMapping::new(MappingSettings::from_parameters(&mut p), expressions)),
+        "photons" => Box::new(DirectView::new(DirectViewSettings::from_parameters(&mut p), expressions)),
         "whitted" => Box::new(Whitted::new(WhittedSettings::from_parameters(&mut p), expressions)),
         "light" => Box::new(LightTracer::new(LightSettings::from_parameters(&mut p), expressions)),
         "ppm" => read_progressive(&mut p, expressions, true),
@@ -141,6 +148,17 @@ pub fn method(entity: &Entity, expressions: PathExpressions) -> (Option<Box<dyn 
     p.finish();
     let integrator = (!context.diagnostics.has_errors()).then_some(integrator);
     (integrator, context.diagnostics)
+}
+
+/// Expressions with the layers that a method has by itself: the film that it is given is to have all of them.
+#[must_use]
+pub fn with_own_layers(entity: &Entity, expressions: PathExpressions) -> PathExpressions {
+    let is_off = |p: &Parameter| p.name == "layers" && p.value == Value::Bools(vec![false]);
+    if method_name(&entity.type_name) == "photonmap" && !entity.parameters.iter().any(is_off) {
+        expressions.with_own_layers(TERM_NAMES)
+    } else {
+        expressions
+    }
 }
 
 fn report_unknown(entity: &Entity, diagnostics: &mut Diagnostics) {

@@ -7,6 +7,7 @@
 
 use etendue_geometry::points::PointTree;
 use etendue_math::{Point2, Point3, Rng, SamplerKind, SamplerSettings, Vector3, hash64};
+use etendue_scene::bsdf::Lobes;
 use etendue_scene::scene::Surface;
 use etendue_scene::{Film, Scene};
 use etendue_spectrum::{Sampled, Wavelengths, Xyz, flux_to_xyz};
@@ -207,7 +208,7 @@ fn by_density(scene: &Scene, n: u64, settings: &GatheringSettings) -> Vec<[f64; 
     image(scene, settings, |surface, lambda, _, (scratch, _)| {
         let Some(bsdf) = scene.bsdf(surface, lambda) else { return Sampled::ZERO };
         tree.nearest(surface.point.p, wanted, f32::INFINITY, &mut scratch.found);
-        let place = LitPlace { p: surface.point.p, wo: surface.wo, bsdf: &bsdf, lambda };
+        let place = LitPlace { p: surface.point.p, wo: surface.wo, bsdf: &bsdf, lobes: Lobes::ALL, lambda };
         radiance(&estimate, &place, wanted, &stored, scratch).radiance
     })
 }

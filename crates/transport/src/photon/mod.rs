@@ -5,9 +5,11 @@
 //! what it would carry alone, to be divided by how many were emitted. All methods that follow light, from light tracing to
 //! photon maps, share [`emit`] and [`walk`].
 
+pub mod direct_view;
 pub mod emit;
 pub mod estimate;
 pub mod map;
+pub mod mapping;
 pub mod progressive;
 pub mod switches;
 pub mod trail;

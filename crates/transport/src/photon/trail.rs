@@ -63,7 +63,7 @@ impl Trail {
     }
 
     /// The events from the light on.
-    pub fn events(self) -> impl DoubleEndedIterator<Item = Event> + ExactSizeIterator {
+    pub fn events(self) -> impl DoubleEndedIterator<Item = Event> + ExactSizeIterator + Clone {
         (0..self.len()).map(move |i| match self.0 >> (i as u32 * LETTER_BITS) & LETTER_MASK {
             1 => Event::Diffuse,
             2 => Event::SharpGlossy,

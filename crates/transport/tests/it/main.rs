@@ -20,6 +20,7 @@ mod media;
 mod merging;
 mod motion;
 mod passes;
+mod photon_mapping;
 mod photons;
 mod pictures;
 mod progressive;

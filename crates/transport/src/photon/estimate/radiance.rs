@@ -37,6 +37,8 @@ pub struct LitPlace<'a> {
     pub wo: Vector3,
     /// How it scatters.
     pub bsdf: &'a Bsdf,
+    /// The lobes that are asked about; diffuse and glossy ones among them count.
+    pub lobes: Lobes,
     /// Wavelengths of the observer.
     pub lambda: &'a Wavelengths,
 }
@@ -173,11 +175,11 @@ fn by_lobes(
     scratch: &mut EstimateScratch,
 ) -> RadianceEstimate {
     let bsdf = place.bsdf;
-    let lobes = [Lobes::DIFFUSE, Lobes::GLOSSY].map(|lobes| bsdf.lobes() & lobes);
+    let lobes = [Lobes::DIFFUSE, Lobes::GLOSSY].map(|lobes| bsdf.lobes() & place.lobes & lobes);
     let mut sums = [LobeSum::default(); 2];
     let wants_side = [
-        (bsdf.lobes() & Lobes::NON_SPECULAR).is_reflective(),
-        (bsdf.lobes() & Lobes::NON_SPECULAR).is_transmissive(),
+        (lobes[0] | lobes[1]).is_reflective(),
+        (lobes[0] | lobes[1]).is_transmissive(),
     ];
     let ns = bsdf.ns().as_vector();
     let towards = ns * ns.dot(place.wo).signum();

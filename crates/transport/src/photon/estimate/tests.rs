@@ -398,7 +398,7 @@ mod surfaces {
         let wanted = estimate.search_size(100);
         PointTree::new(&field.p).nearest(MIDDLE, wanted, 10.0, &mut scratch.found);
         let lambda = Wavelengths::sample_visible(0.37);
-        let place = radiance::LitPlace { p: MIDDLE, wo, bsdf, lambda: &lambda };
+        let place = radiance::LitPlace { p: MIDDLE, wo, bsdf, lobes: Lobes::ALL, lambda: &lambda };
         let found = super::super::radiance(&estimate, &place, wanted, field, &mut scratch);
         (found.radiance, lambda, found.density)
     }

@@ -1,0 +1,236 @@
+//! Photons seen directly (Jensen 2001, chapter 8; SPEC VIS-1 to VIS-6).
+//!
+//! Rays go from the camera through mirrors and glass; at the first surface that scatters widely the photon map is asked for its
+//! radiance. Eye paths `(LS*E)|(DS*E)` and photons `L(S|D)*D` together are all paths. What is blurred is the image itself, so
+//! that direct light needs many photons (SPEC VIS-3); shadow rays may bring it instead (VIS-4), which leaves the smoother rest to the
+//! map. With a few hundred photons the picture is the quickest of all, without shadows (VIS-5). The map of caustics alone (VIS-2) is
+//! the part that nothing else shows as fast; photons carry four wavelengths, and one behind a prism (VIS-6).
+
+use etendue_scene::film::TileSamples;
+use etendue_scene::parameters::{ParameterSpec, Parameters};
+use etendue_scene::{Film, Scene};
+
+use super::estimate::DensityEstimate;
+use super::mapping::{
+    Content, EyeMethod, EyePass, LIGHT_SAMPLER, LitMap, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS,
+    MapNames, MapPlan, Probe, SHARP_ALPHA_SPEC, Seen, WAVELENGTHS, describe_map, length, spec,
+};
+use super::{PhotonEmitter, PhotonWalk};
+use crate::integrator::{Control, Integrator, PassEnd, Passes, ReportEntry};
+use crate::lpe::{PathExpressions, SHARP_ALPHA};
+use crate::path::camera_pass::{CameraPass, WavelengthMode};
+
+/// What is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Show {
+    /// All light, by photons.
+    #[default]
+    All,
+    /// Direct light by shadow rays, the rest by photons.
+    ShadowRays,
+    /// Caustics alone, without lamps.
+    Caustics,
+}
+
+/// Settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirectViewSettings {
+    /// Photons to store, about.
+    pub n_photons: u32,
+    /// Photons of an estimate.
+    pub k: u32,
+    /// The greatest radius of an estimate in metres; `None` for one that fits the density of photons.
+    pub max_radius: Option<f32>,
+    /// What is shown.
+    pub show: Show,
+    /// Most scattering events of a walk from the camera.
+    pub max_depth: u32,
+    /// Most scattering events of a photon.
+    pub max_photon_depth: u32,
+    /// Glossy lobes narrower than this are followed by rays (SPEC LPE-5).
+    pub sharp_alpha: f32,
+    /// How density is estimated.
+    pub estimate: DensityEstimate,
+    /// How wavelengths are chosen.
+    pub wavelengths: WavelengthMode,
+}
+
+impl Default for DirectViewSettings {
+    fn default() -> Self {
+        Self {
+            n_photons: 500_000,
+            k: 200,
+            max_radius: None,
+            show: Show::default(),
+            max_depth: 32,
+            max_photon_depth: 64,
+            sharp_alpha: SHARP_ALPHA,
+            estimate: DensityEstimate::default(),
+            wavelengths: WavelengthMode::default(),
+        }
+    }
+}
+
+const OWN_PARAMETERS: [ParameterSpec; 9] = [
+    spec("photons", "integer", "500000", "", "photons to store, about"),
+    spec("nearest", "integer", "200", "", "photons of an estimate"),
+    spec("radius", "float", "by density", "m", "greatest radius of an estimate"),
+    spec(
+        "show",
+        "string",
+        "all",
+        "",
+        "all (by photons), shadowrays (these for direct light, photons for the rest) or caustics (nothing else)",
+    ),
+    spec("maxdepth", "integer", "32", "", "most mirrors and boundaries that the camera sees through"),
+    MAX_PHOTON_DEPTH,
+    SHARP_ALPHA_SPEC,
+    LIGHT_SAMPLER,
+    WAVELENGTHS,
+];
+
+const N_PARAMETERS: usize = OWN_PARAMETERS.len() + DensityEstimate::PARAMETERS.len();
+
+/// Both tables.
+const ALL_PARAMETERS: [ParameterSpec; N_PARAMETERS] = {
+    let mut all = [MAX_PHOTON_DEPTH; N_PARAMETERS];
+    let mut i = 0;
+    while i < N_PARAMETERS {
+        let own = OWN_PARAMETERS.len();
+        all[i] = if i < own { OWN_PARAMETERS[i] } else { DensityEstimate::PARAMETERS[i - own] };
+        i += 1;
+    }
+    all
+};
+
+impl DirectViewSettings {
+    /// Parameters in scene files.
+    pub const PARAMETERS: &'static [ParameterSpec] = &ALL_PARAMETERS;
+
+    /// Reads the parameters of an integrator entity.
+    pub fn from_parameters(p: &mut Parameters<'_, '_>) -> Self {
+        let default = Self::default();
+        // Read where the scene is built.
+        p.ignore("lightsampler");
+        let shows = [("all", Show::All), ("shadowrays", Show::ShadowRays), ("caustics", Show::Caustics)];
+        Self {
+            n_photons: p.count_within("photons", default.n_photons, 0, MOST_PHOTONS),
+            k: p.count_within("nearest", default.k, 1, MOST_NEIGHBOURS),
+            max_radius: length(p, "radius"),
+            show: p.choice("show", "all", &shows),
+            max_depth: p.count("maxdepth", default.max_depth),
+            max_photon_depth: p.count("maxphotondepth", default.max_photon_depth),
+            sharp_alpha: p.float("sharpalpha", default.sharp_alpha),
+            estimate: DensityEstimate::from_parameters(p),
+            wavelengths: p.choice("wavelengths", "hero", WavelengthMode::CHOICES),
+        }
+    }
+}
+
+/// Photons seen directly.
+#[derive(Debug)]
+pub struct DirectView {
+    settings: DirectViewSettings,
+    expressions: PathExpressions,
+    map: Option<(LitMap, Probe)>,
+    /// Memory of the last pass's tiles, for the next.
+    tiles: Vec<TileSamples>,
+}
+
+impl DirectView {
+    /// A view of photons that fills the film's layers by these expressions.
+    #[must_use]
+    pub const fn new(settings: DirectViewSettings, expressions: PathExpressions) -> Self {
+        Self { settings, expressions, map: None, tiles: Vec::new() }
+    }
+}
+
+impl Integrator for DirectView {
+    fn passes(&self) -> Passes {
+        Passes::Independent
+    }
+
+    fn run_pass(&mut self, scene: &Scene, pass: u64, film: &mut Film, control: &Control<'_>) -> PassEnd {
+        let settings = &self.settings;
+        let (map, _) = self.map.get_or_insert_with(|| {
+            let map = fill(scene, settings);
+            control.tile_done(0, map.rays);
+            let probe = Probe::new(scene, &map, settings.sharp_alpha);
+            (map, probe)
+        });
+        let camera_pass = CameraPass {
+            wavelengths: settings.wavelengths,
+            expressions: &self.expressions,
+            group_size: 1,
+            adaptive: None,
+        };
+        let method = EyeMethod {
+            global: map,
+            caustic: None,
+            global_irradiance: None,
+            caustic_irradiance: None,
+            seen: match settings.show {
+                Show::All => Seen::ByMap,
+                Show::ShadowRays => Seen::ByMapAndShadowRays,
+                Show::Caustics => Seen::ByMapAlone,
+            },
+            accurate_distance: 0.0,
+            n_gather: 1,
+            max_depth: settings.max_depth,
+            sharp_alpha: settings.sharp_alpha,
+        };
+        camera_pass.run(scene, pass, film, control, &mut self.tiles, &EyePass::new(method))
+    }
+
+    fn report(&self) -> Vec<ReportEntry> {
+        let Some((map, probe)) = &self.map else { return Vec::new() };
+        let mut entries = describe_map(&NAMES, map, probe);
+        if map.map.is_empty() {
+            let advice = match self.settings.show {
+                Show::Caustics => {
+                    "no photon came through mirrors or glass to a surface that keeps it: there are no caustics"
+                }
+                _ => {
+                    "no photon met a surface that keeps it; check that lights send photons to where the scene is"
+                }
+            };
+            entries.push(ReportEntry::new("empty_map", 1.0, "").with_advice(advice));
+        }
+        entries
+    }
+}
+
+const NAMES: MapNames = MapNames {
+    emitted: "photons_emitted",
+    stored: "photons_stored",
+    mean_radius: "mean_radius",
+    worst_radius: "worst_radius",
+    max_radius: "max_radius",
+    limited: "estimates_limited",
+    photons_parameter: "photons",
+    radius_parameter: "radius",
+    expects_everywhere: true,
+};
+
+fn fill(scene: &Scene, settings: &DirectViewSettings) -> LitMap {
+    let walk = PhotonWalk {
+        max_depth: settings.max_photon_depth,
+        sharp_alpha: settings.sharp_alpha,
+        wavelengths: settings.wavelengths,
+        sampler: scene.sampler,
+        ..PhotonWalk::default()
+    };
+    let plan = MapPlan {
+        n_photons: u64::from(settings.n_photons),
+        content: match settings.show {
+            Show::All => Content::All,
+            Show::ShadowRays => Content::Scattered,
+            Show::Caustics => Content::Caustic,
+        },
+        walk,
+        k: settings.k as usize,
+        max_radius: settings.max_radius,
+        estimate: settings.estimate,
+    };
+    LitMap::fill(scene, &PhotonEmitter::new(scene), &plan).0
+}

@@ -1,0 +1,230 @@
+//! The two-pass renderer (Jensen 1996, "Global Illumination using Photon Maps", doi:10.1007/978-3-7091-7484-5_3; Jensen 2001, chapter
+//! 9; SPEC PM-2 to PM-12): photons first, then rays from the camera, which ask them.
+//!
+//! [`eye_walk`] tells how the image is divided. The direct term and what is seen in mirrors have no bias. Caustics are blurred by
+//! the radius of their estimates, and indirect light by that of the global map, one reflection away from the eye. Both
+//! vanish as photons become many; noise vanishes with the number of samples.
+//!
+//! The maps are functions of scene, seed and settings alone: they are made before the first pass, and passes are independent.
+
+mod eye_walk;
+mod lit_map;
+mod precomputed;
+mod probe;
+mod settings;
+
+use std::sync::Mutex;
+
+use etendue_scene::film::TileSamples;
+use etendue_scene::{Film, Scene};
+use etendue_spectrum::Sampled;
+
+pub use settings::MappingSettings;
+
+pub(crate) use eye_walk::TERM_NAMES;
+
+pub(super) use eye_walk::{EyeMethod, Seen, follow};
+pub(super) use lit_map::{Content, LitMap, MapPlan};
+pub(super) use probe::{MapNames, Probe, describe_map};
+pub(super) use settings::{
+    LIGHT_SAMPLER, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS, SHARP_ALPHA_SPEC, WAVELENGTHS, length,
+    spec,
+};
+
+use self::precomputed::Precomputed;
+use crate::integrator::{Control, Integrator, PassEnd, Passes, RayCounts, ReportEntry};
+use crate::lpe::PathExpressions;
+use crate::path::camera_pass::{CameraPass, CameraPath, Follow, FollowedPath, Tracer};
+use crate::photon::estimate::EstimateScratch;
+use crate::photon::{PhotonEmitter, PhotonWalk};
+
+/// Photons of the caustic map are other ones than those of the global map.
+const GLOBAL_STREAM: u32 = 0;
+const CAUSTIC_STREAM: u32 = 1;
+
+/// The two-pass renderer.
+#[derive(Debug)]
+pub struct PhotonMapping {
+    settings: MappingSettings,
+    expressions: PathExpressions,
+    maps: Option<Maps>,
+    /// Memory of the last pass's tiles, for the next.
+    tiles: Vec<TileSamples>,
+}
+
+/// What the first pass leaves for the second.
+#[derive(Debug)]
+struct Maps {
+    global: LitMap,
+    caustic: LitMap,
+    global_irradiance: Option<Precomputed>,
+    caustic_irradiance: Option<Precomputed>,
+    accurate_distance: f32,
+    global_probe: Probe,
+    caustic_probe: Probe,
+    is_dark: bool,
+}
+
+impl PhotonMapping {
+    /// The two-pass renderer, which fills the film's layers by these expressions and those of its terms.
+    #[must_use]
+    pub fn new(settings: MappingSettings, expressions: PathExpressions) -> Self {
+        let expressions = if settings.layers { expressions.with_own_layers(TERM_NAMES) } else { expressions };
+        Self { settings, expressions, maps: None, tiles: Vec::new() }
+    }
+}
+
+impl Integrator for PhotonMapping {
+    fn passes(&self) -> Passes {
+        Passes::Independent
+    }
+
+    fn run_pass(&mut self, scene: &Scene, pass: u64, film: &mut Film, control: &Control<'_>) -> PassEnd {
+        let settings = &self.settings;
+        let maps = self.maps.get_or_insert_with(|| {
+            let (maps, rays) = Maps::new(scene, settings);
+            control.tile_done(0, rays);
+            maps
+        });
+        let camera_pass = CameraPass {
+            wavelengths: settings.wavelengths,
+            expressions: &self.expressions,
+            group_size: 1,
+            adaptive: None,
+        };
+        let method = EyeMethod {
+            global: &maps.global,
+            caustic: Some(&maps.caustic),
+            global_irradiance: maps.global_irradiance.as_ref(),
+            caustic_irradiance: maps.caustic_irradiance.as_ref(),
+            seen: Seen::Accurately,
+            accurate_distance: maps.accurate_distance,
+            n_gather: settings.gather_rays,
+            max_depth: settings.max_depth,
+            sharp_alpha: settings.sharp_alpha,
+        };
+        camera_pass.run(scene, pass, film, control, &mut self.tiles, &EyePass::new(method))
+    }
+
+    fn report(&self) -> Vec<ReportEntry> {
+        let Some(maps) = &self.maps else { return Vec::new() };
+        let stored = maps.global.map.len() + maps.caustic.map.len();
+        let mut total = ReportEntry::new("photons_stored", stored as f64, "");
+        if maps.is_dark {
+            total = total.with_advice(
+                "the scene has no light that sends photons; there is nothing but what lamps show",
+            );
+        } else if maps.global.map.is_empty() {
+            total = total.with_advice(
+                "no photon met a surface that keeps them: there is direct light alone; check that lights are where the scene is",
+            );
+        }
+        let mut entries = vec![total];
+        entries.extend(describe_map(&GLOBAL_NAMES, &maps.global, &maps.global_probe));
+        entries.extend(describe_map(&CAUSTIC_NAMES, &maps.caustic, &maps.caustic_probe));
+        entries.push(ReportEntry::new("accurate_distance", f64::from(maps.accurate_distance), "m"));
+        entries
+    }
+}
+
+const GLOBAL_NAMES: MapNames = MapNames {
+    emitted: "global_photons_emitted",
+    stored: "global_photons_stored",
+    mean_radius: "global_mean_radius",
+    worst_radius: "global_worst_radius",
+    max_radius: "global_max_radius",
+    limited: "global_estimates_limited",
+    photons_parameter: "globalphotons",
+    radius_parameter: "globalradius",
+    expects_everywhere: true,
+};
+
+const CAUSTIC_NAMES: MapNames = MapNames {
+    emitted: "caustic_photons_emitted",
+    stored: "caustic_photons_stored",
+    mean_radius: "caustic_mean_radius",
+    worst_radius: "caustic_worst_radius",
+    max_radius: "caustic_max_radius",
+    limited: "caustic_estimates_limited",
+    photons_parameter: "causticphotons",
+    radius_parameter: "causticradius",
+    expects_everywhere: false,
+};
+
+impl Maps {
+    fn new(scene: &Scene, settings: &MappingSettings) -> (Self, RayCounts) {
+        let emitter = PhotonEmitter::new(scene);
+        let walk = PhotonWalk {
+            max_depth: settings.max_photon_depth,
+            sharp_alpha: settings.sharp_alpha,
+            wavelengths: settings.wavelengths,
+            sampler: scene.sampler,
+            stream: GLOBAL_STREAM,
+            ..PhotonWalk::default()
+        };
+        let plan = MapPlan {
+            n_photons: u64::from(settings.global_photons),
+            content: Content::All,
+            walk,
+            k: settings.global_k as usize,
+            max_radius: settings.global_radius,
+            estimate: settings.global_estimate(),
+        };
+        let (global, global_places) = LitMap::fill(scene, &emitter, &plan);
+        let plan = MapPlan {
+            n_photons: u64::from(settings.caustic_photons),
+            content: Content::Caustic,
+            walk: PhotonWalk { stream: CAUSTIC_STREAM, ..walk },
+            k: settings.caustic_k as usize,
+            max_radius: settings.caustic_radius,
+            estimate: settings.estimate,
+        };
+        let (caustic, caustic_places) = LitMap::fill(scene, &emitter, &plan);
+        let precompute =
+            |map, places: &[_], step| (settings.precompute > 0).then(|| Precomputed::new(map, places, step));
+        let global_irradiance = precompute(&global, &global_places, settings.precompute as usize);
+        let caustic_irradiance = precompute(&caustic, &caustic_places, 1);
+        let global_probe = Probe::new(scene, &global, settings.sharp_alpha);
+        let caustic_probe = Probe::new(scene, &caustic, settings.sharp_alpha);
+        let mut rays = global.rays;
+        rays += caustic.rays;
+        let maps = Self {
+            accurate_distance: settings.accurate_distance.unwrap_or(2.0 * global_probe.mean_radius),
+            is_dark: emitter.is_dark(),
+            global,
+            caustic,
+            global_irradiance,
+            caustic_irradiance,
+            global_probe,
+            caustic_probe,
+        };
+        (maps, rays)
+    }
+}
+
+/// Camera paths that ask maps, with memory for each thread.
+#[derive(Debug)]
+pub(super) struct EyePass<'m> {
+    method: EyeMethod<'m>,
+    /// What is in it changes nothing.
+    scratches: Vec<Mutex<EstimateScratch>>,
+}
+
+impl<'m> EyePass<'m> {
+    pub(super) fn new(method: EyeMethod<'m>) -> Self {
+        let n = rayon::current_num_threads().max(1);
+        Self { method, scratches: (0..n).map(|_| Mutex::default()).collect() }
+    }
+}
+
+impl Follow for EyePass<'_> {
+    type Left = ();
+
+    fn follow(&self, tracer: &Tracer<'_>, path: &mut CameraPath<'_, '_>) -> (Sampled, ()) {
+        let place = rayon::current_thread_index().unwrap_or(0) % self.scratches.len();
+        let mut scratch = self.scratches[place].lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        (follow(&self.method, tracer, path, &mut scratch), ())
+    }
+
+    fn join(&self, _: &Tracer<'_>, _: &mut [FollowedPath<()>]) {}
+}

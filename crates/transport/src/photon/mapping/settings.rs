@@ -1,0 +1,198 @@
+//! What scene files say of photon mapping.
+
+use etendue_scene::parameters::{ParameterSpec, Parameters};
+
+use crate::lpe::SHARP_ALPHA;
+use crate::path::camera_pass::WavelengthMode;
+use crate::photon::estimate::{DensityEstimate, Filter};
+
+/// The most photons of a map.
+pub(in crate::photon) const MOST_PHOTONS: u32 = 1 << 26;
+/// The most photons of an estimate.
+pub(in crate::photon) const MOST_NEIGHBOURS: u32 = 1 << 16;
+/// The most rays that gather from one place.
+const MOST_GATHER_RAYS: u32 = 4096;
+
+/// Settings of the two-pass renderer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MappingSettings {
+    /// Photons of the global map, about.
+    pub global_photons: u32,
+    /// Photons of the caustic map, about.
+    pub caustic_photons: u32,
+    /// Photons of an estimate of the global map.
+    pub global_k: u32,
+    /// Photons of an estimate of the caustic map.
+    pub caustic_k: u32,
+    /// The greatest radius of such an estimate in metres; `None` for one that fits the density of photons.
+    pub global_radius: Option<f32>,
+    /// The greatest radius of such an estimate in metres; `None` for one that fits the density of photons.
+    pub caustic_radius: Option<f32>,
+    /// Rays that gather are followed accurately at surfaces nearer than this, in metres; `None` for twice the radius of estimates.
+    pub accurate_distance: Option<f32>,
+    /// Rays that gather from each surface that is seen.
+    pub gather_rays: u32,
+    /// Irradiance is computed before at one of so many photons; 0 for nowhere.
+    pub precompute: u32,
+    /// Most scattering events of a walk from the camera.
+    pub max_depth: u32,
+    /// Most scattering events of a photon.
+    pub max_photon_depth: u32,
+    /// Glossy lobes narrower than this are followed by rays, wider ones ask the maps (SPEC LPE-5).
+    pub sharp_alpha: f32,
+    /// Whether the terms have layers.
+    pub layers: bool,
+    /// How density is estimated.
+    pub estimate: DensityEstimate,
+    /// How wavelengths are chosen.
+    pub wavelengths: WavelengthMode,
+}
+
+impl Default for MappingSettings {
+    fn default() -> Self {
+        Self {
+            global_photons: 200_000,
+            caustic_photons: 200_000,
+            global_k: 100,
+            caustic_k: 80,
+            global_radius: None,
+            caustic_radius: None,
+            accurate_distance: None,
+            gather_rays: 1,
+            precompute: 4,
+            max_depth: 32,
+            max_photon_depth: 64,
+            sharp_alpha: SHARP_ALPHA,
+            layers: true,
+            estimate: DensityEstimate::default(),
+            wavelengths: WavelengthMode::default(),
+        }
+    }
+}
+
+pub(in crate::photon) const fn spec(
+    name: &'static str,
+    kind: &'static str,
+    default: &'static str,
+    unit: &'static str,
+    doc: &'static str,
+) -> ParameterSpec {
+    ParameterSpec { name, kind, default, unit, doc }
+}
+
+/// Parameters that both methods with maps have.
+pub(in crate::photon) const SHARP_ALPHA_SPEC: ParameterSpec = spec(
+    "sharpalpha",
+    "float",
+    "0.1",
+    "",
+    "width of microfacets below which glossy lobes are followed by rays and count as S",
+);
+pub(in crate::photon) const LIGHT_SAMPLER: ParameterSpec =
+    spec("lightsampler", "string", "bvh", "", "how a light is chosen for shadow rays: bvh, power or uniform");
+pub(in crate::photon) const WAVELENGTHS: ParameterSpec = spec(
+    "wavelengths",
+    "string",
+    "hero",
+    "",
+    "wavelengths of a path: hero (four), single, or bands (linear sRGB, as renderers without spectra)",
+);
+pub(in crate::photon) const MAX_PHOTON_DEPTH: ParameterSpec =
+    spec("maxphotondepth", "integer", "64", "", "most scattering events of a photon");
+
+const OWN_PARAMETERS: [ParameterSpec; 15] = [
+    spec("globalphotons", "integer", "200000", "", "photons to store in the global map, about"),
+    spec("causticphotons", "integer", "200000", "", "photons to store in the caustic map, about"),
+    spec("globalnearest", "integer", "100", "", "photons of an estimate of the global map"),
+    spec("causticnearest", "integer", "80", "", "photons of an estimate of the caustic map"),
+    spec("globalradius", "float", "by density", "m", "greatest radius of an estimate of the global map"),
+    spec("causticradius", "float", "by density", "m", "greatest radius of an estimate of the caustic map"),
+    spec(
+        "accuratedistance",
+        "float",
+        "twice the mean radius",
+        "m",
+        "surfaces nearer than this to where gathering starts are treated accurately, against leaks in corners",
+    ),
+    spec("gatherrays", "integer", "1", "", "rays that gather indirect light, for each camera sample"),
+    spec(
+        "precompute",
+        "integer",
+        "4",
+        "",
+        "irradiance is computed before at one of so many photons of the global map, and at all of the caustic map; 0: not",
+    ),
+    spec("maxdepth", "integer", "32", "", "most scattering events of a walk from the camera"),
+    MAX_PHOTON_DEPTH,
+    SHARP_ALPHA_SPEC,
+    spec("layers", "bool", "true", "", "layers direct, specular, caustic and indirect"),
+    LIGHT_SAMPLER,
+    WAVELENGTHS,
+];
+
+const N_PARAMETERS: usize = OWN_PARAMETERS.len() + DensityEstimate::PARAMETERS.len();
+
+/// Both tables.
+const ALL_PARAMETERS: [ParameterSpec; N_PARAMETERS] = {
+    let mut all = [MAX_PHOTON_DEPTH; N_PARAMETERS];
+    let mut i = 0;
+    while i < N_PARAMETERS {
+        let own = OWN_PARAMETERS.len();
+        all[i] = if i < own { OWN_PARAMETERS[i] } else { DensityEstimate::PARAMETERS[i - own] };
+        i += 1;
+    }
+    all
+};
+
+impl MappingSettings {
+    /// Parameters in scene files.
+    pub const PARAMETERS: &'static [ParameterSpec] = &ALL_PARAMETERS;
+
+    /// Reads the parameters of an integrator entity.
+    pub fn from_parameters(p: &mut Parameters<'_, '_>) -> Self {
+        let default = Self::default();
+        // Read where the scene is built.
+        p.ignore("lightsampler");
+        let photons =
+            |p: &mut Parameters<'_, '_>, name, default| p.count_within(name, default, 0, MOST_PHOTONS);
+        let nearest =
+            |p: &mut Parameters<'_, '_>, name, default| p.count_within(name, default, 1, MOST_NEIGHBOURS);
+        Self {
+            global_photons: photons(p, "globalphotons", default.global_photons),
+            caustic_photons: photons(p, "causticphotons", default.caustic_photons),
+            global_k: nearest(p, "globalnearest", default.global_k),
+            caustic_k: nearest(p, "causticnearest", default.caustic_k),
+            global_radius: length(p, "globalradius"),
+            caustic_radius: length(p, "causticradius"),
+            accurate_distance: length(p, "accuratedistance"),
+            gather_rays: p.count_within("gatherrays", default.gather_rays, 1, MOST_GATHER_RAYS),
+            precompute: p.count("precompute", default.precompute),
+            max_depth: p.count("maxdepth", default.max_depth),
+            max_photon_depth: p.count("maxphotondepth", default.max_photon_depth),
+            sharp_alpha: p.float("sharpalpha", default.sharp_alpha),
+            layers: p.bool("layers", default.layers),
+            estimate: DensityEstimate::from_parameters(p),
+            wavelengths: p.choice("wavelengths", "hero", WavelengthMode::CHOICES),
+        }
+    }
+
+    /// The estimate of the global map: by its settings, without a filter, since what it blurs is gathered from afar.
+    #[must_use]
+    pub const fn global_estimate(&self) -> DensityEstimate {
+        DensityEstimate { filter: Filter::Constant, ..self.estimate }
+    }
+}
+
+/// A length in metres, not negative; `None` if it is not given.
+pub(in crate::photon) fn length(p: &mut Parameters<'_, '_>, name: &'static str) -> Option<f32> {
+    if !p.has(name) {
+        return None;
+    }
+    let value = p.float(name, 0.0);
+    if value >= 0.0 {
+        return Some(value);
+    }
+    let span = p.span_of(name);
+    p.diagnostics().error(span, format!("\"{name}\" must be at least 0, not {value}"));
+    None
+}
