@@ -6,6 +6,9 @@
 
 use crate::bvh::{Box3, TraversalRay};
 
+#[cfg(test)]
+mod tests;
+
 /// A part of a ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {

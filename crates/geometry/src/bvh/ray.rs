@@ -91,7 +91,9 @@ impl TraversalRay {
     pub(crate) fn new(ray: &WideRay, bounds: &WideBounds) -> Option<Self> {
         let WideRay { origin, direction } = *ray;
         let reach = (bounds.max - origin).abs().max((bounds.min - origin).abs()).max_element();
-        let step = Vec4::splat(5.0 * f32::EPSILON * reach).copysign(direction);
+        // And what the sum with the origin may lose by rounding, which is all where everything is near a far origin.
+        let step = Vec4::splat(5.0 * f32::EPSILON * reach) + origin.abs() * f32::EPSILON;
+        let step = step.copysign(direction);
         let inverse = Vec4::ONE / direction;
         let d = direction.to_array();
         let axes = axes_by_length(direction.abs().to_array());
