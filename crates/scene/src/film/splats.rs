@@ -225,7 +225,8 @@ fn add_weighted(sums: &mut [f64], record: &[f32], weight: f64) {
 /// The pixels from `min` to `max` whose centre is within `radius` of `p` along an axis; of two that are just that far away, one.
 fn reached(p: f32, radius: f32, min: u32, max: u32) -> std::ops::Range<u32> {
     let (p, radius) = (f64::from(p) - 0.5, f64::from(radius));
-    let bound = |x: f64| (x.floor() + 1.0).clamp(f64::from(min), f64::from(max)) as u32;
+    // The floor of `x` plus 1: below 0 the conversion gives 0. To ask for the floor itself calls a function on many machines.
+    let bound = |x: f64| ((x + 1.0) as u32).clamp(min, max);
     bound(p - radius)..bound(p + radius)
 }
 

@@ -130,7 +130,9 @@ impl PhotonWalk {
             if let Some(medium) = medium {
                 flux *= scene.transmittance_of(medium, hit.t, lambda);
             }
-            let Some(bsdf) = scene.bsdf(&surface, lambda) else {
+            // Borrowed where it lies: it is large.
+            let bsdf = scene.bsdf(&surface, lambda);
+            let Some(bsdf) = &bsdf else {
                 // Light passes as if the surface were not there.
                 ray = surface.spawn_ray(ray.direction);
                 continue;
@@ -140,7 +142,7 @@ impl PhotonWalk {
             let vertex = PhotonVertex {
                 light,
                 surface: &surface,
-                bsdf: &bsdf,
+                bsdf,
                 flux,
                 lambda,
                 medium,
