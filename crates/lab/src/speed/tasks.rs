@@ -7,6 +7,8 @@ use etendue_geometry::Geometry;
 use etendue_geometry::points::{Neighbours, PointTree};
 use etendue_math::{Point3, Rng, Sampler, SamplerSettings};
 use etendue_scene::Film;
+use etendue_spectrum::flux_to_xyz;
+use etendue_transport::photon::{Onward, PhotonEmitter, PhotonMap, PhotonWalk, StoredPhoton, trace_photons};
 use etendue_transport::{Stop, Unobserved, render};
 use rayon::prelude::*;
 
@@ -35,8 +37,8 @@ impl Task {
         Self { name, key, work: Box::new(work) }
     }
 
-    /// Does it once with the threads of the current rayon pool; the number of rays, triangles, paths, look-ups or
-    /// random numbers it took.
+    /// Does it once with the threads of the current rayon pool; the number of rays, triangles, paths, look-ups,
+    /// photons or random numbers it took.
     pub fn run(&self) -> u64 {
         (self.work)()
     }
@@ -77,6 +79,7 @@ pub fn tasks(size: &TaskSize) -> (Vec<Task>, bool) {
     }));
     tasks.push(path_task(size.picture));
     tasks.push(look_up_task(size.points));
+    tasks.extend(photon_tasks(size.points / 10));
     tasks.push(Task::new("random numbers", "random_numbers", random_numbers));
     (tasks, geometry.is_traced_by_avx2())
 }
@@ -149,6 +152,56 @@ fn look_up_task(n_points: u32) -> Task {
         places.par_chunks(CHUNK).for_each(find);
         places.len() as u64
     })
+}
+
+/// Photons of the Cornell box: their ways from surface to surface, the map of those that arrive, and its nearest 50.
+fn photon_tasks(n_photons: u32) -> [Task; 3] {
+    let scene = Arc::new(StudyScene::cornell_box().build());
+    let emitter = PhotonEmitter::new(&scene);
+    let trace = move || {
+        let (photons, _) = trace_photons(
+            &scene,
+            &emitter,
+            0..n_photons.into(),
+            &PhotonWalk::default(),
+            |_, vertex, kept| {
+                kept.push(StoredPhoton {
+                    position: vertex.surface.point.p,
+                    power: flux_to_xyz(vertex.flux, vertex.lambda),
+                    wi: vertex.surface.wo,
+                    trail: vertex.trail,
+                    is_shadow: false,
+                });
+                Onward::Continue
+            },
+        );
+        photons
+    };
+    let photons = trace();
+    let map = PhotonMap::from_photons(&photons, n_photons.into());
+    // Neither sorted nor by walls: photons arrive anywhere.
+    let places: Vec<Point3> = photons.iter().step_by(8).map(|photon| photon.position).collect();
+    let ask = move || {
+        let find = |places: &[Point3]| {
+            let mut found = Neighbours::new();
+            for p in places {
+                map.nearest(*p, NEIGHBOURS, f32::INFINITY, &mut found);
+            }
+            std::hint::black_box(&found);
+        };
+        places.par_chunks(CHUNK).for_each(find);
+        places.len() as u64
+    };
+    [
+        Task::new("photons traced", "photons_traced", move || {
+            std::hint::black_box(trace());
+            n_photons.into()
+        }),
+        Task::new("photons put into a map", "photons_mapped", move || {
+            std::hint::black_box(PhotonMap::from_photons(&photons, n_photons.into())).len() as u64
+        }),
+        Task::new("look-ups of 50 photons", "photon_look_ups", ask),
+    ]
 }
 
 /// Numbers of the default sampler, in pairs: 64 for each sample of a row of pixels.
