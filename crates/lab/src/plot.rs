@@ -241,8 +241,10 @@ const MAX_LINES: usize = 40;
 /// Horizontal axes that span more have powers of ten for labels: others would run into each other.
 const LABELLED_RANGE: f64 = 1e4;
 const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-/// Room for a legend in the lower corner, as a share of the height of the curves.
-const LEGEND_SHARE: f64 = 0.3;
+/// Height of a panel within its axes in pixels.
+const CURVES_HEIGHT: f64 = 421.0;
+/// Height of a legend in the lower corner in pixels: its margins, and each name.
+const LEGEND_HEIGHT: (f64, f64) = (26.0, 17.5);
 
 /// Why drawing does not fail.
 const IN_MEMORY: &str = "a string takes any drawing";
@@ -326,6 +328,9 @@ impl Panel {
                     .legend(move |(x, y)| PathElement::new([(x, y), (x + end, y)], style));
             }
         }
+        if self.series.iter().all(|series| series.name.is_empty()) {
+            return;
+        }
         chart
             .configure_series_labels()
             .position(self.legend.position())
@@ -344,7 +349,12 @@ impl Panel {
     fn y_range_with_legend(&self) -> [f64; 2] {
         let [low, high] = self.range(1);
         match self.legend {
-            Corner::LowerLeft => [low * (low / high).powf(LEGEND_SHARE), high],
+            Corner::LowerLeft => {
+                let n_names = self.series.iter().filter(|series| !series.name.is_empty()).count() as f64;
+                let names = LEGEND_HEIGHT.0 + LEGEND_HEIGHT.1 * n_names;
+                let share = if n_names > 0.0 { names / (CURVES_HEIGHT - names).max(1.0) } else { 0.0 };
+                [low * (low / high).powf(share), high]
+            }
             Corner::UpperLeft | Corner::UpperRight => [low, high],
         }
     }

@@ -227,26 +227,33 @@ impl AcceleratorStudy {
     pub fn summary(&self) -> String {
         let mut text = String::new();
         for model in MODELS {
-            for (index, accelerator) in Accelerator::ALL.iter().enumerate() {
+            let largest =
+                self.costs.iter().filter(|cost| cost.model == model).map(|cost| cost.n_triangles).max();
+            let _ = writeln!(
+                text,
+                "{model:<17} build ns, bytes a triangle; nodes, tests, ns a bounced ray ({} triangles)",
+                largest.unwrap_or(0)
+            );
+            for accelerator in Accelerator::ALL {
                 let Some(cost) = self.of(model, accelerator.name()).last() else { continue };
-                if index == 0 {
-                    let _ = writeln!(
-                        text,
-                        "{:<17} build ns, bytes a triangle; nodes, tests, ns a bounced ray ({} triangles)",
-                        model, cost.n_triangles
-                    );
-                }
                 let AcceleratorRayCost { nodes, primitives, time_s } = cost.rays[TYPICAL];
                 let [build, bytes] = [cost.build_ns_per_triangle(), cost.bytes_per_triangle()];
                 let name = accelerator.name();
                 let _ = write!(text, "{name:<17} {build:8.0} {bytes:14.1}");
-                let _ = writeln!(text, "       {nodes:6.1} {primitives:6.1} {:6.0}", 1e9 * time_s);
+                let _ = write!(text, "       {nodes:6.1} {primitives:6.1} {:6.0}", 1e9 * time_s);
+                let is_largest = Some(cost.n_triangles) == largest;
+                let _ = if is_largest {
+                    writeln!(text)
+                } else {
+                    writeln!(text, " ({} triangles)", cost.n_triangles)
+                };
             }
         }
         text
     }
 
-    /// Tests, nodes and time of a bounced ray, time to build and memory: a row each, a column for each kind of model.
+    /// Tests, nodes and time of a bounced ray, time to build and memory: a row each, a column for each kind of model. The
+    /// first column names the structures.
     #[must_use]
     pub fn svg(&self) -> String {
         type Value = fn(&AcceleratorCost) -> f64;
@@ -258,13 +265,17 @@ impl AcceleratorStudy {
             ("memory", "bytes for each triangle", AcceleratorCost::bytes_per_triangle),
         ];
         let panel = |model: &str, (what, label, value): &(&str, &str, Value)| {
+            let mut series = self.series(model, *value);
+            if model != MODELS[0] {
+                series.iter_mut().for_each(|curve| curve.name.clear());
+            }
             Part::Panel(Panel {
                 title: format!("{model}: {what}"),
                 x_label: "triangles".to_owned(),
                 y_label: (*label).to_owned(),
                 axes: Axes::Logarithmic,
                 legend: Corner::LowerLeft,
-                series: self.series(model, *value),
+                series,
                 ..Panel::default()
             })
         };

@@ -10,7 +10,13 @@ pub(super) const RING: Generator = Generator {
     id: "SCENE-16",
     doc: "a metal ring on a table: the caustic inside is a nephroid, or a cardioid for a lamp on the rim",
     parameters: &[
-        number("distance", "6", [1.0, 100.0], "m", "of the lamp from the middle; 1 is above the rim"),
+        number(
+            "distance",
+            "6",
+            [1.0, 100.0],
+            "m",
+            "of the lamp from the middle; 1.2208 at 35 degrees is above the rim",
+        ),
         number("elevation", "35", [5.0, 80.0], "degrees", "of the lamp, seen from the middle"),
         number("lamp-size", "0.05", [0.001, 0.2], "", "radius of the lamp as a share of its distance"),
     ],

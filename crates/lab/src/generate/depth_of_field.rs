@@ -50,7 +50,7 @@ fn text(name: &str, stop: f32, focus: f32, focal_length: f32) -> String {
 # that of a film 36 mm wide. Small bright lamps in the distance show the disk that a point out of focus becomes.
 
 LookAt 0 0.17 0   0.07 0.04 0.85   0 1 0
-Camera "perspective" "float fov" [ {fov} ] "float lensradius" [ {lens_radius} ] "float focaldistance" [ {focus} ]
+Camera "perspective" "float focallength" [ {focal_length} ] "float fstop" [ {stop} ] "float focaldistance" [ {focus} ]
 {frame}
 WorldBegin
 
@@ -71,9 +71,6 @@ AttributeBegin
   {sparks}AttributeEnd
 "#,
         lens_mm = focal_length / stop,
-        lens_radius = 0.5e-3 * focal_length / stop,
-        // The angle of the shorter side, 20.25 mm high.
-        fov = 2.0 * (10.125 / focal_length).atan().to_degrees(),
         frame = frame.text(),
         lamp = quad([-0.6, 1.2, 0.2], [0.0, 1.2, 0.2], [-0.6, 1.2, 0.8], [0.0, 1.2, 0.8]),
         floor = quad([-1.5, 0.0, -0.5], [1.5, 0.0, -0.5], [-1.5, 0.0, 3.5], [1.5, 0.0, 3.5]),

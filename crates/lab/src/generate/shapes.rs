@@ -89,7 +89,7 @@ AttributeBegin
 AttributeEnd
 "#,
         frame = frame.text(),
-        lamp = sphere([0.0, 10.0, 17.3], 0.5),
+        lamp = sphere([1.7, 10.0, 17.440_508], 0.5),
         floor = quad([-8.0, -8.0, 0.0], [8.0, -8.0, 0.0], [-8.0, 8.0, 0.0], [8.0, 8.0, 0.0]),
     );
     Files::of_text("formulas", text)

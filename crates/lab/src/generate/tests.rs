@@ -1,3 +1,5 @@
+mod optics;
+
 use std::path::Path;
 
 use etendue_io::{load_assets, read_pbrt};
