@@ -203,7 +203,8 @@ impl Tree<'_> {
                 LightPlace::Random => path.sampler.next_2d(),
                 LightPlace::Middle => Point2::new(0.5, 0.5),
             };
-            let sample = light.sample_li(&scene.light_context_at(surface.time), &surface.reference(), u, path.lambda);
+            let sample =
+                light.sample_li(&scene.light_context_at(surface.time), &surface.reference(), u, path.lambda);
             if let Some(sample) = sample.filter(|sample| is_linked && sample.pdf_w > 0.0) {
                 let le = sample.le / sample.pdf_w;
                 radiance += self.reflect(tracer, surface, bsdf, branch, (&sample, le), path);
