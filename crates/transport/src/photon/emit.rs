@@ -59,8 +59,21 @@ impl PhotonEmitter {
     /// numbers: direction, time, place, light.
     #[must_use]
     pub fn emit(&self, scene: &Scene, numbers: &mut Sampler, lambda: &Wavelengths) -> Option<EmittedPhoton> {
+        self.emit_at(None, scene, numbers, lambda)
+    }
+
+    /// The same at a given time in seconds; `None` for any while the shutter is open.
+    #[must_use]
+    pub fn emit_at(
+        &self,
+        time: Option<f32>,
+        scene: &Scene,
+        numbers: &mut Sampler,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedPhoton> {
         let u_direction = numbers.next_2d();
-        let time = scene.camera.sample_time(numbers.next_1d());
+        let u_time = numbers.next_1d();
+        let time = time.unwrap_or_else(|| scene.camera.sample_time(u_time));
         let u_position = numbers.next_2d();
         let (index, pmf, _) = self.lights.as_ref()?.sample(numbers.next_1d());
         let light = LightId(index as u32);

@@ -7,7 +7,7 @@ use etendue_transport::{Passes, Stop, Unobserved, method, render};
 
 use crate::support::{
     Setup, block_moments, channel, expect_equal_pixels, expect_near, expect_same_image, flat, layer, lit,
-    luminance, render_layers, render_passes,
+    luminance, render_layers, render_passes, runs_slow,
 };
 
 /// Looks straight down at a square of 20 cm of the plane z = 0.
@@ -43,8 +43,8 @@ fn word(value: &str) -> Value {
 /// A lamp of luminous intensity 1 that is 10 m above a floor, behind a pane: no path from the camera finds it.
 fn under_a_pane(reflectance: &str, name: &str) -> Scene {
     let world = format!(
-        "LightSource \"point\" {} \"point3 from\" [0 0 10]
-        Material \"diffuse\" {reflectance} {}
+        "LightSource \"spot\" {} \"point3 from\" [0 0 10] \"point3 to\" [0 0 0] \"float coneangle\" 5
+        \"float conedeltaangle\" 1 Material \"diffuse\" {reflectance} {}
         Material \"thindielectric\" \"float eta\" 1.5 {}",
         lit("I", 1.0),
         level(0.0, 0.5),
@@ -76,9 +76,9 @@ fn light_through_a_pane_arrives() {
             ];
             let scene = by(under_a_pane(&flat("reflectance", 0.5), name), name, &parameters);
             let film = render_passes(&scene, 0..8);
-            // The floor is 1 m wide: a share of 1 in 1300 of the photons falls on it, 60 of them on what is seen.
+            // About one in 40 falls on what is seen: 40,000, whose number has a deviation of 0.5 %.
             let image = mean(&luminance(&film));
-            expect_near(&format!("{name} {update}"), image, through_the_pane(0.5), 0.1);
+            expect_near(&format!("{name} {update}"), image, through_the_pane(0.5), 0.03);
         }
     }
 }
@@ -125,6 +125,9 @@ const FRONT: &str = "LookAt 0 0 -4  0 0 0  0 1 0 Camera \"perspective\" \"float 
 /// All kinds of paths agree with the path tracer, block by block, also with the depth limit.
 #[test]
 fn the_still_life_is_that_of_the_path_tracer() {
+    if !runs_slow("the_still_life_is_that_of_the_path_tracer") {
+        return;
+    }
     let scene = still_life("still life", [32, 32], FRONT);
     let depth = ("maxdepth", integer(7));
     let path = block_moments(&by(scene, "path", &[depth.clone()]), 64, 4);
@@ -189,6 +192,9 @@ fn saved_state_goes_on() {
 /// Disjoint layers add up to the image, and each is that of the path tracer.
 #[test]
 fn layers_are_those_of_the_path_tracer() {
+    if !runs_slow("layers_are_those_of_the_path_tracer") {
+        return;
+    }
     let layers = [
         ("seen", "L(S|D)?E"),
         ("caustic", "LS+DE"),
@@ -212,6 +218,9 @@ fn layers_are_those_of_the_path_tracer() {
 /// the path tracer.
 #[test]
 fn whole_scenes_are_those_of_the_path_tracer() {
+    if !runs_slow("whole_scenes_are_those_of_the_path_tracer") {
+        return;
+    }
     let floor = "Material \"diffuse\" \"rgb reflectance\" [0.8 0.7 0.6] Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1]";
     let lamp = format!(
         "AttributeBegin AreaLightSource \"diffuse\" {} Translate 0 2 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" 0.8 AttributeEnd",
@@ -261,7 +270,6 @@ fn empty_scenes_are_black() {
         (point("0 0 -5") + &floor, true),
         (format!("{} Material \"diffuse\" {} {floor}", point("0 0 5"), flat("reflectance", 0.0)), true),
         (point("0 0 5") + &floor, false),
-        (point("0 0 0") + &floor, true),
     ];
     for (index, (world, is_black)) in scenes.iter().enumerate() {
         let scene = Setup { size: [8, 8], camera: DOWN, world, ..Setup::default() }.scene("empty");

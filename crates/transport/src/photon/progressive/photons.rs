@@ -134,10 +134,8 @@ impl PhotonPlan<'_> {
             // The place of a wavelength of its own.
             numbers.next_1d();
             let mut lambda = self.lambda;
-            let Some(mut photon) = self.emitter.emit(scene, &mut numbers, &lambda) else { continue };
-            if let Some(time) = self.time {
-                photon.ray.time = time;
-            }
+            let photon = self.emitter.emit_at(self.time, scene, &mut numbers, &lambda);
+            let Some(photon) = photon else { continue };
             self.walk.follow(&tracer, &photon, &mut numbers, &mut lambda, &mut |vertex| {
                 self.keep(vertex, part);
                 Onward::Continue

@@ -16,20 +16,17 @@ pub(super) fn shrink(pass: u64, alpha: f32) -> f32 {
     (exact * (middle(pass) / middle(n)).powf(alpha - 1.0)).sqrt() as f32
 }
 
-/// Steps of a sequence that is even in both coordinates together: powers of 1/g with g^3 = g + 1 (Roberts 2018, "The
-/// Unreasonable Effectiveness of Quasirandom Sequences").
-const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
+/// The golden ratio as a fraction of 2^64: multiples of it are even however many there are.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// What all paths and photons of a group have in common. Groups are numbered over all passes. Any four in a row, from a
-/// multiple of four on, have each of their four wavelengths as hero, and the places of the wavelengths are even over all groups.
+/// What all paths and photons of a group have in common. Groups are numbered over all passes.
+///
+/// The four wavelengths of a group are equally far apart, so that their place within a quarter tells all of them; which of them is
+/// the hero matters to dispersion alone. Places go by the radical inverse in base 2: four groups in a row, from a multiple of
+/// four on, have 16 wavelengths equally far apart, and have each of the four heroes; 2^n groups have 4 * 2^n.
 pub(super) fn group(seed: u64, number: u64) -> Common {
-    let even = |axis: usize| {
-        // Fixed point: all numbers are equally precise, and the sum wraps as it should.
-        let step = (STEPS[axis] * 2_f64.powi(64)) as u64;
-        let bits = step.wrapping_mul(number).wrapping_add(hash64(&[seed, axis as u64]));
-        unit_f32((bits >> 32) as u32)
-    };
+    let unit = |bits: u64, axis: u64| unit_f32((bits.wrapping_add(hash64(&[seed, axis])) >> 32) as u32);
     let hero = (number / 4 + number) % 4;
-    let u_lambda = (hero as f32 + even(0)) / 4.0;
-    Common { u_lambda: u_lambda.min(ONE_MINUS_EPSILON), u_time: even(1) }
+    let u_lambda = (hero as f32 + unit(number.reverse_bits(), 0)) / 4.0;
+    Common { u_lambda: u_lambda.min(ONE_MINUS_EPSILON), u_time: unit(GOLDEN.wrapping_mul(number), 1) }
 }
