@@ -15,6 +15,7 @@ mod degenerate;
 mod determinism;
 mod features;
 mod furnace;
+mod gathering;
 mod layers;
 mod media;
 mod merging;

@@ -403,13 +403,6 @@ mod surfaces {
         (found.radiance, lambda, found.density)
     }
 
-    #[track_caller]
-    fn check_close(a: Sampled, b: Sampled) {
-        for (a, b) in a.to_array().into_iter().zip(b.to_array()) {
-            assert!((a - b).abs() <= 1e-4 * b.abs().max(1e-3), "{a} {b}");
-        }
-    }
-
     /// Photons from all directions above; a third of them from below.
     fn field() -> Field {
         let mut rng = Rng::new(3, 3);
@@ -454,7 +447,12 @@ mod surfaces {
                 for wo in [Vector3::new(0.6, 0.0, 0.8), Vector3::new(0.0, 0.6, -0.8)] {
                     let bsdf = Bsdf::new(ns, ng, Vector3::new(1.0, 0.0, 0.0), line.kind);
                     let (radiance, lambda, density) = estimate_of(&bsdf, &field, wo);
-                    check_close(radiance, direct_sum(&bsdf, &field, wo, &lambda, density));
+                    let expected = direct_sum(&bsdf, &field, wo, &lambda, density);
+                    // Coats are followed by random walks, which differ from lobe to lobe.
+                    let tolerance = if bsdf.kind().has_density() { 1e-3 } else { 0.05 };
+                    for (a, b) in radiance.to_array().into_iter().zip(expected.to_array()) {
+                        assert!((a - b).abs() <= tolerance * b.abs().max(1e-3), "{}: {a} {b}", line.name);
+                    }
                 }
             }
         }
