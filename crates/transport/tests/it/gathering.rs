@@ -42,10 +42,11 @@ fn light_in_a_sphere() {
         kept.push((PhotonLight::new(vertex, N).expect("diffuse walls are lit"), photon));
         Onward::Continue
     });
-    let direct = photons.iter().filter(|(_, photon)| photon.trail.is_empty()).fold([0.0_f64; 3], |sum, (_, p)| {
-        let power = p.power.to_array();
-        [0, 1, 2].map(|i| sum[i] + f64::from(power[i]) / N as f64)
-    });
+    let direct =
+        photons.iter().filter(|(_, photon)| photon.trail.is_empty()).fold([0.0_f64; 3], |sum, (_, p)| {
+            let power = p.power.to_array();
+            [0, 1, 2].map(|i| sum[i] + f64::from(power[i]) / N as f64)
+        });
     let mut lambda = Wavelengths::sample_visible(0.4);
     let irradiance = Xyz::from(direct.map(|flux| (flux / f64::from(4.0 * PI * RADIUS * RADIUS)) as f32));
     let once = lift(irradiance, &lambda) * (ALBEDO / PI);

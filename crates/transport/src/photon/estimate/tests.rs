@@ -428,7 +428,9 @@ mod surfaces {
         for (p, wi) in field.p.iter().zip(&field.wi) {
             if p.distance_squared(MIDDLE) < density.radius * density.radius * (1.0 - 1e-5) {
                 let f = bsdf.eval(wo, *wi, TransportMode::Radiance, Lobes::NON_SPECULAR);
+                let is_bent = bsdf.ns() != bsdf.ng();
                 let stretch = bsdf.abs_cos(*wi) / wi.dot(bsdf.ng().as_vector()).abs().max(0.02);
+                let stretch = if is_bent { stretch } else { 1.0 };
                 sum += f * lift(Xyz::new(1.0, 1.0, 1.0), lambda) * stretch;
             }
         }
