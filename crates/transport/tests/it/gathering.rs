@@ -78,7 +78,8 @@ fn light_in_a_sphere() {
     let estimate = MapEstimate { density: DensityEstimate::default(), k: 400, max_radius: 1.0 };
     let place = LitPlace { p: surface.point.p, wo: surface.wo, bsdf: &bsdf, lambda: &lambda };
     let found = estimate.radiance(&map, &place, &mut EstimateScratch::default());
-    assert!(found.density.n_photons == 400 && !found.density.is_limited);
+    // Some of the 400, where the sphere has turned, came from below the tangent plane.
+    assert!((370..=400).contains(&found.density.n_photons) && !found.density.is_limited);
     // 400 photons of a few per cent different powers, more where the sphere is curved, by (r / 2R)^2 = 5 %.
     expect_ratio("density", found.radiance, once, 1.0 / (1.0 - ALBEDO), 0.3);
 }

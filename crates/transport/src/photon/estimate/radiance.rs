@@ -177,10 +177,7 @@ fn by_lobes(
     let bsdf = place.bsdf;
     let lobes = [Lobes::DIFFUSE, Lobes::GLOSSY].map(|lobes| bsdf.lobes() & place.lobes & lobes);
     let mut sums = [LobeSum::default(); 2];
-    let wants_side = [
-        (lobes[0] | lobes[1]).is_reflective(),
-        (lobes[0] | lobes[1]).is_transmissive(),
-    ];
+    let wants_side = [(lobes[0] | lobes[1]).is_reflective(), (lobes[0] | lobes[1]).is_transmissive()];
     let ns = bsdf.ns().as_vector();
     let towards = ns * ns.dot(place.wo).signum();
     let correct = correction(bsdf);
