@@ -357,6 +357,8 @@ pub(crate) enum StudyName {
     EstimateHistogram,
     /// Photons as small lights against their radiance estimate, in a box
     Gathering,
+    /// Error of the patterns in which photons leave lights, and of the ways to treat absorption
+    PhotonEmission,
 }
 
 /// Arguments of `brdf`.

@@ -8,8 +8,8 @@ use etendue::lab::estimates::{
     consistency, edge, gathering, handle, walls,
 };
 use etendue::lab::{
-    AcceleratorSettings, ConvergenceSettings, LightSizeSettings, PixelSettings, SceneSizeSettings,
-    accelerators, convergence, light_size, pixel, scene_size,
+    AcceleratorSettings, ConvergenceSettings, EmissionStudySettings, LightSizeSettings, PixelSettings,
+    SceneSizeSettings, accelerators, convergence, light_size, photon_emission, pixel, scene_size,
 };
 
 use crate::args::{StudyArguments, StudyName};
@@ -82,6 +82,12 @@ fn measure(arguments: &StudyArguments) -> Result<(&'static str, String, String, 
         StudyName::Gathering => {
             let settings = if quick { GatheringSettings::quick(seed) } else { GatheringSettings::full(seed) };
             curves("gathering", gathering(&settings, &mut note))
+        }
+        StudyName::PhotonEmission => {
+            let settings =
+                if quick { EmissionStudySettings::quick(seed) } else { EmissionStudySettings::full(seed) };
+            let study = photon_emission(&settings, &mut note);
+            ("photon-emission", study.csv(), study.svg(), study.summary())
         }
     })
 }

@@ -11,6 +11,7 @@ use etendue_math::{Bounds3, Point3, Vector3};
 
 use crate::geometry::Geometry;
 use crate::hit::GeometryId;
+use crate::shape::entity::Entity;
 
 /// A ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +104,42 @@ impl Geometry {
         shapes.chain(instances).collect()
     }
 
+    /// Balls that together hold all that the wanted shapes of the world and of instances are made of, at all times: each shape
+    /// of many primitives has some for its parts, and what is flat is covered by small ones. About at most `n_balls`.
+    #[must_use]
+    pub fn covering_spheres(
+        &self,
+        n_balls: usize,
+        wanted: &dyn Fn(GeometryId) -> bool,
+    ) -> Vec<BoundingSphere> {
+        let ids = (0..self.entities.len() as u32).filter(|index| wanted(GeometryId(*index)));
+        let (in_world, in_objects): (Vec<u32>, Vec<u32>) =
+            ids.partition(|index| self.entity_groups[*index as usize] == crate::builder::WORLD);
+        let mut boxes = Vec::new();
+        let mut spheres = Vec::new();
+        for index in in_world {
+            match &self.entities[index as usize] {
+                Entity::Sphere(sphere) if 2 * spheres.len() < n_balls => spheres.push(sphere.globe().ball()),
+                entity => boxes.extend(parts(entity)),
+            }
+        }
+        for instance in &self.instances {
+            let of_group =
+                in_objects.iter().filter(|index| self.entity_groups[**index as usize] == instance.group);
+            boxes.extend(
+                of_group
+                    .flat_map(|index| parts(&self.entities[*index as usize]))
+                    .filter_map(|b| instance.world_bounds(b)),
+            );
+        }
+        let n_left = n_balls - spheres.len().min(n_balls);
+        let boxes = joined(boxes, n_left);
+        let n_pieces = (n_left / boxes.len().max(1)).clamp(1, N_PARTS * N_PARTS);
+        let pieces = boxes.into_iter().flat_map(|bounds| cut(bounds, n_pieces));
+        spheres.extend(pieces.filter_map(BoundingSphere::around));
+        spheres
+    }
+
     /// The same in at most `n_clusters` groups of neighbours, each with a ball around all of its objects: ranges of objects in order
     /// along the longest side of what they fill, cut in halves.
     #[must_use]
@@ -125,4 +162,71 @@ impl Geometry {
         };
         clusters.into_iter().filter_map(joined).collect()
     }
+}
+
+/// Cells along each side of a shape that its primitives are sorted into.
+const N_PARTS: usize = 4;
+
+/// Boxes around parts of a shape: around the primitives whose middles lie in the same cell of a grid.
+fn parts(entity: &Entity) -> Vec<Bounds3> {
+    let whole = entity.whole_bounds();
+    if whole.is_empty() {
+        return Vec::new();
+    }
+    let extent = whole.diagonal();
+    let mut cells = vec![Bounds3::EMPTY; N_PARTS * N_PARTS * N_PARTS];
+    for bounds in (0..entity.n_primitives()).map(|primitive| entity.bounds(primitive)) {
+        if bounds.is_empty() || !bounds.min.is_finite() || !bounds.max.is_finite() {
+            continue;
+        }
+        let from_corner = bounds.centroid() - whole.min;
+        let cell = (0..3).fold(0, |cell, axis| {
+            let place = if extent[axis] > 0.0 { from_corner[axis] / extent[axis] } else { 0.0 };
+            cell * N_PARTS + ((place * N_PARTS as f32) as usize).min(N_PARTS - 1)
+        });
+        cells[cell] = cells[cell].union(bounds);
+    }
+    cells.retain(|cell| !cell.is_empty());
+    cells
+}
+
+/// At most about `n` boxes that hold these: neighbours along the longest side of what they fill are joined.
+fn joined(boxes: Vec<Bounds3>, n: usize) -> Vec<Bounds3> {
+    if boxes.len() <= n.max(1) {
+        return boxes;
+    }
+    if n <= 1 {
+        return vec![boxes.into_iter().fold(Bounds3::EMPTY, Bounds3::union)];
+    }
+    let axis = Bounds3::from_points(boxes.iter().map(|b| b.centroid())).diagonal().max_dimension();
+    let mut first = boxes;
+    first.sort_by(|a, b| a.centroid()[axis].total_cmp(&b.centroid()[axis]));
+    let second = first.split_off(first.len() / 2);
+    let mut all = joined(first, n / 2);
+    all.extend(joined(second, n - n / 2));
+    all
+}
+
+/// A box in at most `n` pieces: cut in halves across the longest side while that is more than twice the shortest, so that balls
+/// around the pieces stay near what is flat or long.
+fn cut(bounds: Bounds3, n: usize) -> Vec<Bounds3> {
+    let mut pieces = vec![bounds];
+    while 2 * pieces.len() <= n {
+        let side = pieces[0].diagonal();
+        let axis = side.max_dimension();
+        if side[axis] <= 2.0 * side[0].min(side[1]).min(side[2]) {
+            break;
+        }
+        pieces = pieces
+            .into_iter()
+            .flat_map(|piece| {
+                let middle = piece.centroid()[axis];
+                let (mut low, mut high) = (piece, piece);
+                low.max[axis] = middle;
+                high.min[axis] = middle;
+                [low, high]
+            })
+            .collect();
+    }
+    pieces
 }

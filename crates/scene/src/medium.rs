@@ -59,6 +59,12 @@ impl Media {
         MediumId(index as u32)
     }
 
+    /// True if there are none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.absorption.is_empty()
+    }
+
     /// The share of light that is left after a distance in metres, which may be infinite.
     #[inline]
     #[must_use]

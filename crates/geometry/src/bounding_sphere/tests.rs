@@ -76,3 +76,29 @@ fn balls_are_joined() {
     assert!((axis - Vector3::new(1.0, 0.0, 0.0)).length() < 1e-6 && (cosine - 0.75_f32.sqrt()).abs() < 1e-6);
     assert!(GeometryBuilder::new().build().object_clusters(3).is_empty());
 }
+
+/// What a ray meets of the wanted shapes lies within one of the covering balls, moving instances and flat shapes included; and
+/// a floor is covered by small ones.
+#[test]
+fn covering_balls_hold_what_is_wanted() {
+    let geometry = scattered();
+    let wanted = |id: GeometryId| id.0.is_multiple_of(2);
+    let mut rng = Rng::new(5, 3);
+    for n in [1, 7, 100, 1000] {
+        let spheres = geometry.covering_spheres(n, &wanted);
+        assert!(!spheres.is_empty() && spheres.len() <= 2 * n, "{} balls instead of {n}", spheres.len());
+        for _ in 0..4000 {
+            let ray = Ray { time: rng.next_f32(), ..crate::test_support::ray(&mut rng, 25.0) };
+            let Some(hit) = geometry.intersect(&ray, f32::INFINITY, &any) else { continue };
+            let p = geometry.surface_point(&ray, &hit).p;
+            assert!(!wanted(hit.geometry) || spheres.iter().any(|sphere| sphere.contains(p)), "{p:?}");
+        }
+    }
+    assert!(geometry.covering_spheres(10, &|_| false).is_empty());
+    let mut builder = GeometryBuilder::new();
+    let flat = Transform::scale(5.0, 5.0, 0.01).expect("it has an inverse");
+    builder.add(Shape::Triangles(ball(3)), &still(flat), false);
+    let spheres = builder.build().covering_spheres(256, &|_| true);
+    let volume: f32 = spheres.iter().map(|sphere| sphere.radius.powi(3)).sum();
+    assert!(volume < 0.2 * 125.0, "{volume} in {} balls", spheres.len());
+}

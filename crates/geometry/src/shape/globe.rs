@@ -12,9 +12,11 @@
 use std::f32::consts::TAU;
 
 use etendue_math::approx::sin_cos_turns;
+use etendue_math::warp::sample_cosine_hemisphere;
 use etendue_math::{Frame, Point2, Point3, Ray, Vector3};
 use glam::DVec3;
 
+use crate::bounding_sphere::BoundingSphere;
 use crate::double;
 use crate::hit::{Reference, ShapeSample};
 use crate::light_sampling::{area_density, solid_angle_density};
@@ -71,6 +73,11 @@ impl Globe {
         (centre + n * f64::from(self.radius), n)
     }
 
+    /// The ball that it bounds, moved outwards by rounding.
+    pub(crate) fn ball(&self) -> BoundingSphere {
+        BoundingSphere { centre: self.centre, radius: self.radius + 8.0 * f32::EPSILON * self.size }
+    }
+
     /// Area in square metres.
     pub(super) fn area(&self) -> f32 {
         2.0 * TAU * self.radius * self.radius
@@ -96,6 +103,15 @@ impl Globe {
         let ring = (4.0 * u.x * (1.0 - u.x)).max(0.0).sqrt();
         let (sin, cos) = sin_cos_turns(u.y);
         self.sample_at(Vector3::new(ring * cos, ring * sin, z), 1.0 / self.area())
+    }
+
+    /// A point whose normal is within a right angle of the unit direction `w`, in proportion to the cosine: its density per area
+    /// is `cos / (pi r^2)`.
+    #[must_use]
+    pub fn sample_facing(&self, w: Vector3, u: Point2) -> ShapeSample {
+        let local = sample_cosine_hemisphere(u);
+        let n = Frame::from_z(w).to_world(local);
+        self.sample_at(n * self.sign, local.z / (0.5 * TAU * self.radius * self.radius))
     }
 
     /// The cone of directions from `p` to the sphere, unless `p` is inside or may be but for rounding: a point of the sphere

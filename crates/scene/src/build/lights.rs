@@ -5,7 +5,7 @@ use etendue_geometry::Geometry;
 use crate::document::Value;
 use crate::light::{
     AreaLight, Light, LightContext, LightId, LightSampler, LightSamplerKind, LightTables, MovingAreaLight,
-    SceneSphere, placed_area,
+    SceneBox, SceneSphere, placed_area,
 };
 use crate::scene::ShapeLights;
 use crate::texture::FloatTexture;
@@ -22,8 +22,11 @@ pub(super) struct BuiltLights {
 
 impl Builder<'_, '_> {
     pub(super) fn build_lights(&mut self, geometry: &Geometry) -> BuiltLights {
-        let mut tables =
-            LightTables { scene_sphere: SceneSphere::around(geometry.bounds()), ..LightTables::default() };
+        let mut tables = LightTables {
+            scene_sphere: SceneSphere::around(geometry.bounds()),
+            scene_box: SceneBox::around(geometry.bounds()),
+            ..LightTables::default()
+        };
         let mut lights = Vec::new();
         for entity in &self.document.lights {
             let built = tables.build_light(entity, &mut self.context);

@@ -17,7 +17,7 @@ use etendue_geometry::{FlatLamp, Geometry, GeometryId, Lamp, Reference, ShapeSam
 use etendue_math::{Normal3, Point2, Point3, Ray, Vector3};
 use etendue_spectrum::{Sampled, Wavelengths};
 
-use super::{EmittedRay, LightBounds, LightContext, LightPower, LightSample, LightTables};
+use super::{Directions, EmittedRay, LightBounds, LightContext, LightPower, LightSample, LightTables};
 
 pub use emission::{AreaEmission, AreaEmissionId};
 pub use luminous::{LuminousProfile, LuminousProfileId};
@@ -188,6 +188,44 @@ impl AreaLight {
             _ => context.geometry.sample_area(self.geometry, self.primitive, u_position)?,
         };
         emission.leaving(context, &s, u_direction, lambda)
+    }
+
+    /// A ray in the direction `w`: from a place of the lamp that is uniform in area, on spheres in proportion to its cosine.
+    pub(super) fn emit_towards(
+        &self,
+        context: &LightContext,
+        u_position: Point2,
+        w: Vector3,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedRay> {
+        let emission = self.emission(context);
+        let s = match &self.lamp {
+            Some(Lamp::Sphere(globe)) if !emission.two_sided() => globe.sample_facing(w, u_position),
+            Some(Lamp::Flat(lamp)) if !emission.varies() => lamp.sample_area(u_position),
+            _ => context.geometry.sample_area(self.geometry, self.primitive, u_position)?,
+        };
+        emission.leaving_towards(context, &s, w, lambda)
+    }
+
+    /// In which directions it sends flux.
+    pub(super) fn directions(&self, context: &LightContext) -> Directions {
+        let emission = self.emission(context);
+        if let Some(Lamp::Sphere(_)) = self.lamp
+            && !emission.two_sided()
+            && emission.is_matte()
+        {
+            return Directions::Sphere;
+        }
+        let (axis, cos_normals) = context.geometry.emission_cone(self.geometry, self.primitive);
+        if cos_normals < 1.0 - 1e-6 || emission.is_tabulated() {
+            return Directions::Varied;
+        }
+        Directions::Cosine { axis, cos_max: emission.cos_max(), two_sided: emission.two_sided() }
+    }
+
+    /// True if all rays that it sends carry the same flux.
+    pub(super) fn is_even(&self, context: &LightContext) -> bool {
+        self.emission(context).is_even()
     }
 
     pub(super) fn pdf_le(&self, context: &LightContext, ray: &Ray, ng: Option<Normal3>) -> (f32, f32) {

@@ -1,7 +1,7 @@
 //! What lights need to know besides themselves, and what they answer.
 
 use etendue_geometry::{Geometry, Reference};
-use etendue_math::{Bounds3, Frame, Motion, Normal3, Point2, Point3, Ray, Vector3, warp};
+use etendue_math::{Bounds3, Frame, Motion, Normal3, Point2, Point3, Ray, Vector3, lerp, warp};
 use etendue_spectrum::{Sampled, SpectrumTables};
 
 use crate::texture::Textures;
@@ -53,6 +53,56 @@ impl SceneSphere {
     }
 }
 
+/// The box around the scene. Of light that comes from infinity in a direction w, the flux through it is that through its shadow
+/// across w, of area `sum |w_i| A_i` over the areas of its faces: for flat scenes much less than through the sphere around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneBox {
+    bounds: Bounds3,
+}
+
+impl SceneBox {
+    /// The box around what there is, a little larger; `None` around nothing, a point or what is infinite.
+    #[must_use]
+    pub fn around(bounds: Bounds3) -> Option<Self> {
+        let size = bounds.diagonal().length();
+        if bounds.is_empty() || !(size > 0.0 && size.is_finite()) {
+            return None;
+        }
+        let margin = Vector3::splat(5e-4 * size) + bounds.min.abs().max(bounds.max.abs()).as_vector() * 1e-6;
+        Some(Self { bounds: Bounds3 { min: bounds.min - margin, max: bounds.max + margin } })
+    }
+
+    /// Areas of the shadows of the faces across each axis.
+    fn shadows(&self, w: Vector3) -> [f32; 3] {
+        let d = self.bounds.diagonal();
+        [w.x.abs() * d.y * d.z, w.y.abs() * d.z * d.x, w.z.abs() * d.x * d.y]
+    }
+
+    /// Area of the shadow across the unit direction `w`, in square metres.
+    #[must_use]
+    pub fn cross_section(&self, w: Vector3) -> f32 {
+        self.shadows(w).iter().sum()
+    }
+
+    /// Start of a ray that enters the box in the unit direction `w`, uniform over the shadow.
+    fn sample_entry(&self, w: Vector3, u: Point2) -> Ray {
+        let shadows = self.shadows(w);
+        let mut place = u.x * self.cross_section(w);
+        let mut axis = 0;
+        while axis < 2 && place >= shadows[axis] {
+            place -= shadows[axis];
+            axis += 1;
+        }
+        let t = if shadows[axis] > 0.0 { (place / shadows[axis]).min(1.0) } else { 0.5 };
+        let Bounds3 { min, max } = self.bounds;
+        let mut origin = if w[axis] > 0.0 { min } else { max };
+        for (across, t) in [((axis + 1) % 3, t), ((axis + 2) % 3, u.y)] {
+            origin[across] = lerp(t, min[across], max[across]);
+        }
+        Ray::new(origin, w)
+    }
+}
+
 /// The arenas behind the ids that lights hold.
 #[derive(Clone, Debug, Default)]
 pub struct LightTables {
@@ -78,9 +128,32 @@ pub struct LightTables {
     pub motions: Vec<Motion>,
     /// The sphere around the scene; to be set before any light at infinity is used.
     pub scene_sphere: SceneSphere,
+    /// The box around the scene, through which such lights emit; through the sphere if `None`.
+    pub scene_box: Option<SceneBox>,
 }
 
 impl LightTables {
+    /// Start of a ray from infinity in the unit direction `w` (SPEC EMI-7), and its density per square metre across it.
+    pub(super) fn sample_entry(&self, w: Vector3, u: Point2) -> (Ray, f32) {
+        let ray = match &self.scene_box {
+            Some(scene_box) => scene_box.sample_entry(w, u),
+            None => self.scene_sphere.sample_entry(w, u),
+        };
+        (ray, self.entry_pdf(w))
+    }
+
+    /// Density of such starts per square metre.
+    pub(super) fn entry_pdf(&self, w: Vector3) -> f32 {
+        1.0 / self.entry_area(w)
+    }
+
+    /// Area across the unit direction `w` through which lights at infinity emit.
+    #[must_use]
+    pub fn entry_area(&self, w: Vector3) -> f32 {
+        let of_sphere = || self.scene_sphere.cross_section();
+        self.scene_box.as_ref().map_or_else(of_sphere, |scene_box| scene_box.cross_section(w))
+    }
+
     /// Adds a picture.
     pub fn add_image(&mut self, image: LightImage) -> LightImageId {
         self.images.push(image);
@@ -195,22 +268,23 @@ impl EmittedRay {
         })
     }
 
-    /// A ray from infinity that enters the scene's sphere in the direction `w`.
+    /// A ray from infinity that enters the scene in the direction `w`.
     pub(super) fn from_infinity(
-        sphere: &SceneSphere,
+        tables: &LightTables,
         w: Vector3,
         u_position: Point2,
         le: Sampled,
         pdf_w: f32,
     ) -> Option<Self> {
-        (pdf_w > 0.0).then(|| Self {
-            ray: sphere.sample_entry(w, u_position),
+        let (ray, pdf_a) = tables.sample_entry(w, u_position);
+        (pdf_w > 0.0 && pdf_a.is_finite()).then(|| Self {
+            ray,
             p_error: Vector3::splat(0.0),
             n: None,
             uv: Point2::splat(0.0),
             le,
             cosine: 1.0,
-            pdf_a: 1.0 / sphere.cross_section(),
+            pdf_a,
             pdf_w,
         })
     }

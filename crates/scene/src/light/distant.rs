@@ -74,11 +74,11 @@ impl DistantLight {
         lambda: &Wavelengths,
     ) -> Option<EmittedRay> {
         let le = self.irradiance.sample(context.spectra, lambda);
-        EmittedRay::from_infinity(&context.tables.scene_sphere, -self.to_light, u_position, le, 1.0)
+        EmittedRay::from_infinity(context.tables, -self.to_light, u_position, le, 1.0)
     }
 
     pub(super) fn pdf_le(&self, context: &LightContext, _: &Ray, _: Option<Normal3>) -> (f32, f32) {
-        (1.0 / context.tables.scene_sphere.cross_section(), 0.0)
+        (context.tables.entry_pdf(-self.to_light), 0.0)
     }
 
     pub(super) fn power(&self, context: &LightContext) -> LightPower {

@@ -143,6 +143,15 @@ impl GoniometricLight {
         EmittedRay::from_point(self.p, w, le, pdf_uv / (4.0 * PI))
     }
 
+    pub(super) fn emit_towards(
+        &self,
+        context: &LightContext,
+        w: Vector3,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedRay> {
+        EmittedRay::from_point(self.p, w, self.intensity_towards(context, w, lambda)?, 1.0)
+    }
+
     pub(super) fn pdf_le(&self, _: &LightContext, ray: &Ray, _: Option<Normal3>) -> (f32, f32) {
         let pdf_w = self
             .to_light_space(ray.direction)

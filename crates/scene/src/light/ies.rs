@@ -40,13 +40,33 @@ pub struct IesLight {
     distribution: PiecewiseConstant2,
 }
 
-/// The direction at a place of the density's domain, and the sine of its angle to the nadir.
-fn direction_at(place: Point2) -> (Vector3, f32) {
+/// The direction at a place of the density's domain.
+fn direction_at(place: Point2) -> Vector3 {
     let ((sine, cosine), (y, x)) = ((PI * place.y).sin_cos(), (2.0 * PI * place.x).sin_cos());
-    (Vector3::new(sine * x, sine * y, -cosine), sine)
+    Vector3::new(sine * x, sine * y, -cosine)
 }
 
-/// For each cell of the density, rows from the nadir, its largest intensity times the sine in its middle. For the web C, whose
+/// Solid angle of a row of cells over that of the sphere, times one half: the difference of the cosines at its ends.
+fn row_height(row: usize) -> f32 {
+    let step = PI / N_CELLS.0 as f32;
+    2.0 * ((row as f32 + 0.5) * step).sin() * (0.5 * step).sin()
+}
+
+/// The direction at a place of the density's domain, uniform in solid angle within its row.
+fn emitted_direction(place: Point2) -> (Vector3, usize) {
+    let n = N_CELLS.0 as f32;
+    let row = ((place.y * n) as usize).min(N_CELLS.0 - 1);
+    let within = (place.y * n - row as f32).clamp(0.0, 1.0);
+    // From the pole that is nearer, where 1 - cos has all its digits.
+    let is_up = 2 * row >= N_CELLS.0;
+    let (from_pole, within) = if is_up { (N_CELLS.0 - 1 - row, 1.0 - within) } else { (row, within) };
+    let half = 0.5 * PI * from_pole as f32 / n;
+    let h = 2.0 * half.sin() * half.sin() + within * row_height(from_pole);
+    let (sine, (y, x)) = ((h * (2.0 - h)).max(0.0).sqrt(), (2.0 * PI * place.x).sin_cos());
+    (Vector3::new(sine * x, sine * y, if is_up { 1.0 - h } else { h - 1.0 }), row)
+}
+
+/// For each cell of the density, rows from the nadir, its largest intensity times its solid angle. For the web C, whose
 /// angles are those of the cells, no cell with light has weight 0; for others corners and middle stand for a cell.
 fn cell_weights(photometry: &Photometry) -> Vec<f32> {
     let (rows, columns) = N_CELLS;
@@ -56,11 +76,10 @@ fn cell_weights(photometry: &Photometry) -> Vec<f32> {
         (0..columns).map(|column| places_within(column, columns, 360.0, horizontal)).collect();
     let mut weights = Vec::with_capacity(rows * columns);
     for (row, ys) in by_row.iter().enumerate() {
-        let (_, sine) = direction_at(Point2::new(0.0, (row as f32 + 0.5) / rows as f32));
         for xs in &by_column {
             let places = ys.iter().flat_map(|y| xs.iter().map(move |x| Point2::new(*x, *y)));
-            let candela = places.map(|place| photometry.intensity(direction_at(place).0));
-            weights.push(sine * candela.fold(0.0, f32::max));
+            let candela = places.map(|place| photometry.intensity(direction_at(place)));
+            weights.push(row_height(row) * candela.fold(0.0, f32::max));
         }
     }
     weights
@@ -83,6 +102,11 @@ fn places_within(index: usize, n: usize, whole: f32, bends: &[f32]) -> Vec<f32> 
     places.sort_by(f32::total_cmp);
     places.dedup();
     places
+}
+
+/// Density per steradian in a row of cells where the density of the domain is `pdf`.
+fn density_of(pdf: f32, row: usize) -> f32 {
+    pdf / (2.0 * PI * N_CELLS.0 as f32 * row_height(row))
 }
 
 impl IesLight {
@@ -171,24 +195,28 @@ impl IesLight {
         lambda: &Wavelengths,
     ) -> Option<EmittedRay> {
         let (place, pdf) = self.distribution.sample(u_direction);
-        let (w_light, sine) = direction_at(place);
+        let (w_light, row) = emitted_direction(place);
         let w = self.world_from_light.vector(w_light).try_normalized()?;
         let le = self.intensity_towards(context, w, lambda)?;
-        if sine <= 0.0 {
-            return None;
-        }
-        EmittedRay::from_point(self.p, w, le, pdf / (2.0 * PI * PI * sine))
+        EmittedRay::from_point(self.p, w, le, density_of(pdf, row))
+    }
+
+    pub(super) fn emit_towards(
+        &self,
+        context: &LightContext,
+        w: Vector3,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedRay> {
+        EmittedRay::from_point(self.p, w, self.intensity_towards(context, w, lambda)?, 1.0)
     }
 
     pub(super) fn pdf_le(&self, _: &LightContext, ray: &Ray, _: Option<Normal3>) -> (f32, f32) {
         let Some(w) = self.to_light_space(ray.direction) else { return (0.0, 0.0) };
         let sine = w.x.hypot(w.y);
-        if sine <= 0.0 {
-            return (0.0, 0.0);
-        }
         let turn = (w.y.atan2(w.x) / (2.0 * PI)).rem_euclid(1.0).min(1.0 - f32::EPSILON / 2.0);
         let place = Point2::new(turn, (sine.atan2(-w.z) / PI).min(1.0 - f32::EPSILON / 2.0));
-        (0.0, self.distribution.pdf(place) / (2.0 * PI * PI * sine))
+        let row = ((place.y * N_CELLS.0 as f32) as usize).min(N_CELLS.0 - 1);
+        (0.0, density_of(self.distribution.pdf(place), row))
     }
 
     pub(super) fn power(&self, context: &LightContext) -> LightPower {

@@ -75,11 +75,11 @@ impl InfiniteConstantLight {
     ) -> Option<EmittedRay> {
         let w = warp::sample_uniform_sphere(u_direction);
         let le = self.le(context, lambda);
-        EmittedRay::from_infinity(&context.tables.scene_sphere, w, u_position, le, UNIFORM_SPHERE)
+        EmittedRay::from_infinity(context.tables, w, u_position, le, UNIFORM_SPHERE)
     }
 
-    pub(super) fn pdf_le(&self, context: &LightContext, _: &Ray, _: Option<Normal3>) -> (f32, f32) {
-        (1.0 / context.tables.scene_sphere.cross_section(), UNIFORM_SPHERE)
+    pub(super) fn pdf_le(&self, context: &LightContext, ray: &Ray, _: Option<Normal3>) -> (f32, f32) {
+        (context.tables.entry_pdf(ray.direction), UNIFORM_SPHERE)
     }
 
     pub(super) fn power(&self, context: &LightContext) -> LightPower {

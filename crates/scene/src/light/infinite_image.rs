@@ -115,11 +115,11 @@ impl InfiniteImageLight {
     ) -> Option<EmittedRay> {
         let (wi, uv, pdf_w) = self.sample_direction(u_direction)?;
         let le = self.radiance(context, uv, lambda);
-        EmittedRay::from_infinity(&context.tables.scene_sphere, -wi, u_position, le, pdf_w)
+        EmittedRay::from_infinity(context.tables, -wi, u_position, le, pdf_w)
     }
 
     pub(super) fn pdf_le(&self, context: &LightContext, ray: &Ray, _: Option<Normal3>) -> (f32, f32) {
-        (1.0 / context.tables.scene_sphere.cross_section(), self.pdf_direction(-ray.direction))
+        (context.tables.entry_pdf(ray.direction), self.pdf_direction(-ray.direction))
     }
 
     pub(super) fn power(&self, context: &LightContext) -> LightPower {

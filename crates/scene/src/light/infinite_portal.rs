@@ -11,7 +11,8 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use etendue_geometry::Reference;
 use etendue_math::{
-    Bounds2, Frame, Normal3, Point2, Point3, Ray, Transform, Vector3, WindowedPiecewiseConstant2, warp,
+    Bounds2, Frame, Normal3, PiecewiseConstant2, Point2, Point3, Ray, Transform, Vector3,
+    WindowedPiecewiseConstant2, warp,
 };
 use etendue_spectrum::{Sampled, Spectrum, Wavelengths};
 
@@ -59,6 +60,8 @@ pub struct InfinitePortalLight {
     /// Spectrum of the radiance integrated over the projected hemisphere, before `scale`.
     exitance: Spectrum,
     distribution: WindowedPiecewiseConstant2,
+    /// Of what the opening emits, where the cosine counts as well.
+    emission: PiecewiseConstant2,
 }
 
 /// The frame of a rectangle.
@@ -144,6 +147,8 @@ impl InfinitePortalLight {
             exitance_factor += f64::from(jacobian * w.z) / n_texels as f64;
         }
         let weights: Vec<f32> = sampling_weights(&rgb).iter().zip(&jacobians).map(|(v, j)| v * j).collect();
+        let emitted: Vec<f32> =
+            sampling_weights(&rgb).iter().zip(&projected).map(|(v, p)| v * *p as f32).collect();
         let mean = weighted_mean(rgb.iter().copied().zip(projected), picture.space, picture.white);
         let domain = Bounds2::new(Point2::splat(0.0), Point2::splat(1.0));
         Ok(Self {
@@ -153,6 +158,7 @@ impl InfinitePortalLight {
             scale,
             exitance: mean.scaled(exitance_factor as f32),
             distribution: WindowedPiecewiseConstant2::new(&weights, size, size, domain),
+            emission: PiecewiseConstant2::new(&emitted, size, size, domain),
         })
     }
 
@@ -253,9 +259,9 @@ impl InfinitePortalLight {
         u_direction: Point2,
         lambda: &Wavelengths,
     ) -> Option<EmittedRay> {
-        let (uv, pdf_uv) = self.distribution.sample(u_direction, whole())?;
+        let (uv, pdf_uv) = self.emission.sample(u_direction);
         let (w_out, jacobian) = direction_at(uv);
-        if jacobian <= 0.0 {
+        if jacobian <= 0.0 || pdf_uv <= 0.0 {
             return None;
         }
         let (along_y, along_x) = self.edges();
@@ -263,7 +269,8 @@ impl InfinitePortalLight {
         let cosine = w_out.z;
         let w = -self.frame.to_world(w_out);
         Some(EmittedRay {
-            ray: Ray::new(p, w),
+            // From where the light comes, since what stands before the opening is in its way.
+            ray: Ray::new(p - w * self.way_out(context, p), w),
             p_error: Vector3::splat(0.0),
             n: None,
             uv: Point2::splat(0.0),
@@ -280,7 +287,13 @@ impl InfinitePortalLight {
         if jacobian <= 0.0 {
             return (0.0, 0.0);
         }
-        (1.0 / (self.area() * cosine), self.distribution.pdf(uv, whole()) / jacobian)
+        (1.0 / (self.area() * cosine), self.emission.pdf(uv) / jacobian)
+    }
+
+    /// A distance from a point in any direction at which all of the scene lies behind.
+    fn way_out(&self, context: &LightContext, p: Point3) -> f32 {
+        let sphere = &context.tables.scene_sphere;
+        p.distance(sphere.center) + sphere.radius
     }
 
     /// The first and the last edge.
@@ -300,10 +313,6 @@ impl InfinitePortalLight {
     pub(super) const fn bounds(&self, _: &LightContext) -> Option<LightBounds> {
         None
     }
-}
-
-fn whole() -> Bounds2 {
-    Bounds2::new(Point2::splat(0.0), Point2::splat(1.0))
 }
 
 fn contains(window: &Bounds2, uv: Point2) -> bool {

@@ -32,6 +32,8 @@ mod photometry;
 mod photons;
 mod profile;
 
+mod directions;
+
 mod area;
 mod distant;
 mod goniometric;
@@ -59,7 +61,8 @@ pub use area::{
 };
 pub use bounds::LightBounds;
 pub use build::LightKind;
-pub use context::{EmittedRay, LightContext, LightPoint, LightSample, LightTables, SceneSphere};
+pub use context::{EmittedRay, LightContext, LightPoint, LightSample, LightTables, SceneBox, SceneSphere};
+pub use directions::Directions;
 pub use distant::DistantLight;
 pub use emission::{LightPower, LightUnits};
 pub use goniometric::{GoniometricLight, GoniometricLightId};
@@ -251,6 +254,34 @@ impl Light {
         lambda: &Wavelengths,
     ) -> Option<EmittedRay> {
         dispatch!(self, context, light => light.sample_le(context, u_position, u_direction, lambda))
+    }
+
+    /// A ray that leaves the light in the unit direction `w`, which is given: `pdf_w` is 1. `None` where it sends nothing, and
+    /// for lights at infinity.
+    #[must_use]
+    pub fn emit_towards(
+        &self,
+        context: &LightContext,
+        u_position: Point2,
+        w: Vector3,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedRay> {
+        let tables = context.tables;
+        match self {
+            Self::Point(light) => light.emit_towards(context, w, lambda),
+            Self::Spot(light) => light.emit_towards(context, w, lambda),
+            Self::Goniometric(id) => tables.goniometric[id.0 as usize].emit_towards(context, w, lambda),
+            Self::Ies(id) => tables.luminaires[id.0 as usize].emit_towards(context, w, lambda),
+            Self::Projection(id) => tables.projections[id.0 as usize].emit_towards(context, w, lambda),
+            Self::Area(light) => light.emit_towards(context, u_position, w, lambda),
+            Self::MovingArea(light) => light.emit_towards(context, u_position, w, lambda),
+            Self::Distant(_)
+            | Self::InfiniteConstant(_)
+            | Self::InfiniteImage(_)
+            | Self::InfinitePortal(_)
+            | Self::Sky(_)
+            | Self::Sun(_) => None,
+        }
     }
 
     /// Densities (`pdf_a` per square metre, `pdf_w` per steradian) with which [`sample_le`](Self::sample_le) emits

@@ -63,6 +63,15 @@ impl PointLight {
         EmittedRay::from_point(self.p, w, self.intensity.sample(context.spectra, lambda), 1.0 / (4.0 * PI))
     }
 
+    pub(super) fn emit_towards(
+        &self,
+        context: &LightContext,
+        w: Vector3,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedRay> {
+        EmittedRay::from_point(self.p, w, self.intensity.sample(context.spectra, lambda), 1.0)
+    }
+
     pub(super) const fn pdf_le(&self, _: &LightContext, _: &Ray, _: Option<Normal3>) -> (f32, f32) {
         (0.0, 1.0 / (4.0 * PI))
     }

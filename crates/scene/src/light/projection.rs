@@ -22,6 +22,9 @@ pub struct ProjectionLightId(pub u32);
 /// Directions below this cosine to the axis are dark.
 const MIN_COSINE: f32 = 1e-3;
 
+/// Least number of cells of the density along the longer side of a picture.
+const N_CELLS: usize = 128;
+
 /// A projector.
 #[derive(Clone, Debug)]
 pub struct ProjectionLight {
@@ -86,10 +89,19 @@ impl ProjectionLight {
                 )
             })
             .collect();
-        let weights: Vec<f32> = sampling_weights(&picture.rgb)
-            .iter()
-            .zip(&solid_angles)
-            .map(|(value, solid_angle)| value * *solid_angle as f32)
+        // Cells small enough that a place within them makes no difference to the flux of a photon.
+        let n_parts = N_CELLS.div_ceil(nx.max(ny));
+        let (n_columns, n_rows) = (nx * n_parts, ny * n_parts);
+        let values = sampling_weights(&picture.rgb);
+        let weights: Vec<f32> = (0..n_columns * n_rows)
+            .map(|i| {
+                let (column, row) = (i % n_columns, i / n_columns);
+                let middle = |t: usize, n: usize, half: f64| half * ((2 * t + 1) as f64 / n as f64 - 1.0);
+                let x = middle(column, n_columns, half_extent[0]);
+                let y = middle(row, n_rows, half_extent[1]);
+                let cosine = 1.0 / (1.0 + x * x + y * y).sqrt();
+                values[row / n_parts * nx + column / n_parts] * cosine.powi(3) as f32
+            })
             .collect();
         let brightness = picture.rgb.iter().copied().zip(solid_angles.iter().copied());
         let mean_intensity = weighted_mean(brightness, picture.space, picture.white);
@@ -102,7 +114,7 @@ impl ProjectionLight {
             screen,
             flux: mean_intensity.scaled(solid_angles.iter().sum::<f64>() as f32),
             mean_intensity,
-            distribution: PiecewiseConstant2::new(&weights, nx, ny, screen),
+            distribution: PiecewiseConstant2::new(&weights, n_columns, n_rows, screen),
         }
     }
 
@@ -167,6 +179,16 @@ impl ProjectionLight {
         let w = self.world_from_light.vector(w_light).try_normalized()?;
         let pdf_w = pdf_q / (w_light.z * w_light.z * w_light.z); // dw = cos^3 dA
         EmittedRay::from_point(self.p, w, self.intensity_at(context, q, lambda), pdf_w)
+    }
+
+    pub(super) fn emit_towards(
+        &self,
+        context: &LightContext,
+        w: Vector3,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedRay> {
+        let q = self.screen_point(self.light_from_world.vector(w).try_normalized()?)?;
+        EmittedRay::from_point(self.p, w, self.intensity_at(context, q, lambda), 1.0)
     }
 
     pub(super) fn pdf_le(&self, _: &LightContext, ray: &Ray, _: Option<Normal3>) -> (f32, f32) {

@@ -144,6 +144,16 @@ impl SpotLight {
         EmittedRay::from_point(self.p, w, le, falloff / self.solid_angle())
     }
 
+    pub(super) fn emit_towards(
+        &self,
+        context: &LightContext,
+        w: Vector3,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedRay> {
+        let intensity = self.intensity.sample(context.spectra, lambda) * self.falloff(w);
+        EmittedRay::from_point(self.p, w, intensity, 1.0)
+    }
+
     pub(super) fn pdf_le(&self, _: &LightContext, ray: &Ray, _: Option<Normal3>) -> (f32, f32) {
         (0.0, self.falloff(ray.direction) / self.solid_angle())
     }

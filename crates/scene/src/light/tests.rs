@@ -3,6 +3,7 @@
 mod area;
 mod bands;
 mod build;
+mod emission;
 mod fields;
 mod luminaire;
 mod profiled;

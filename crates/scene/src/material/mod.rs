@@ -16,6 +16,7 @@ mod metal;
 mod normal_map;
 mod perturbation;
 mod roughness;
+mod sharp;
 mod spec;
 mod uniform;
 

@@ -22,6 +22,7 @@ mod merging;
 mod motion;
 mod passes;
 mod photon_mapping;
+mod photon_maps;
 mod photons;
 mod pictures;
 mod progressive;

@@ -276,6 +276,44 @@ impl AreaEmission {
         })
     }
 
+    /// A ray that leaves a point of the surface in the direction `w`, which is given: its `pdf_w` is 1.
+    pub(super) fn leaving_towards(
+        &self,
+        context: &LightContext,
+        s: &ShapeSample,
+        w: Vector3,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedRay> {
+        let cosine = s.n.dot_vector(w);
+        let cosine = if self.two_sided { cosine.abs() } else { cosine };
+        let le = self.le(context, s.n, s.uv, w, lambda) * self.coverage(context, s.p, s.n, s.uv);
+        (cosine > 0.0 && s.pdf_a > 0.0 && !le.is_black()).then(|| EmittedRay {
+            ray: Ray::new(s.p, w),
+            p_error: s.p_error,
+            n: Some(s.n),
+            uv: s.uv,
+            le,
+            cosine,
+            pdf_a: s.pdf_a,
+            pdf_w: 1.0,
+        })
+    }
+
+    /// True if radiance is the same in all directions.
+    pub(super) const fn is_matte(&self) -> bool {
+        matches!(self.falloff, Falloff::Even)
+    }
+
+    /// True if radiance depends on direction by a table, which may have details of any size.
+    pub(super) const fn is_tabulated(&self) -> bool {
+        matches!(self.falloff, Falloff::Table(_))
+    }
+
+    /// True if all rays of [`leaving`](Self::leaving) from points of one density carry the same flux.
+    pub(super) const fn is_even(&self) -> bool {
+        !self.varies() && !self.is_tabulated()
+    }
+
     /// Density per steradian of [`leaving`](Self::leaving) at a cosine to the normal.
     pub(super) fn leaving_pdf(&self, context: &LightContext, cosine: f32) -> f32 {
         let cosine = if self.two_sided { cosine.abs() } else { cosine.max(0.0) };

@@ -141,6 +141,19 @@ impl MovingAreaLight {
         Some(emitted)
     }
 
+    pub(in crate::light) fn emit_towards(
+        &self,
+        context: &LightContext,
+        u_position: Point2,
+        w: Vector3,
+        lambda: &Wavelengths,
+    ) -> Option<EmittedRay> {
+        let point = self.sample_point(context, u_position)?;
+        let mut emitted = self.emission(context).leaving_towards(context, &point, w, lambda)?;
+        emitted.ray.time = context.time;
+        Some(emitted)
+    }
+
     pub(in crate::light) fn pdf_le(
         &self,
         context: &LightContext,

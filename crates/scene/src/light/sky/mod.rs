@@ -205,12 +205,11 @@ impl SkyLight {
     ) -> Option<EmittedRay> {
         let (local, pdf_w) = self.sample_direction(u_direction);
         let le = self.radiance(context, local, lambda);
-        let sphere = &context.tables.scene_sphere;
-        EmittedRay::from_infinity(sphere, -self.frame.to_world(local), u_position, le, pdf_w)
+        EmittedRay::from_infinity(context.tables, -self.frame.to_world(local), u_position, le, pdf_w)
     }
 
     pub(super) fn pdf_le(&self, context: &LightContext, ray: &Ray, _: Option<Normal3>) -> (f32, f32) {
-        (1.0 / context.tables.scene_sphere.cross_section(), self.pdf_direction(-ray.direction))
+        (context.tables.entry_pdf(ray.direction), self.pdf_direction(-ray.direction))
     }
 
     pub(super) fn power(&self, context: &LightContext) -> LightPower {

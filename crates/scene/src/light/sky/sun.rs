@@ -3,7 +3,7 @@
 //!
 //! The disc does not set bit by bit: it shines while its centre is above the horizon by more than -0.27 degrees.
 
-use std::f32::consts::PI;
+use std::f32::consts::{PI, TAU};
 
 use etendue_geometry::Reference;
 use etendue_math::{Frame, Normal3, Point2, Ray, Vector3, warp};
@@ -35,6 +35,14 @@ fn sin_radius() -> f32 {
 fn one_minus_cos() -> f32 {
     let s = sin_radius();
     s * s / (1.0 + (1.0 - s * s).sqrt())
+}
+
+/// Density per steradian of directions that light is emitted by, where the sine of the angle to the centre is `sine`.
+fn emitted_pdf(sine: f32) -> f32 {
+    let ratio = sine / sin_radius();
+    let alpha = limb_darkening_exponent(BAND_NM);
+    let limb = (1.0 - ratio * ratio).max(0.0).powf(alpha / 2.0) * (2.0 + alpha) / 2.0;
+    limb * (1.0 - sine * sine).sqrt() / (PI * sin_radius() * sin_radius())
 }
 
 impl SunLight {
@@ -107,9 +115,14 @@ impl SunLight {
         u_direction: Point2,
         lambda: &Wavelengths,
     ) -> Option<EmittedRay> {
-        let wi = self.sample_direction(u_direction);
-        let (le, pdf_w) = (self.le(context, wi, lambda), warp::narrow_cone_pdf(one_minus_cos()));
-        EmittedRay::from_infinity(&context.tables.scene_sphere, -wi, u_position, le, pdf_w)
+        // By brightness at 550 nm: of mu^alpha over the disc the share up to mu is mu^(2 + alpha).
+        let mu = u_direction.x.powf(1.0 / (2.0 + limb_darkening_exponent(BAND_NM)));
+        let sine = sin_radius() * (1.0 - mu * mu).max(0.0).sqrt();
+        let (y, x) = (TAU * u_direction.y).sin_cos();
+        let local = Vector3::new(sine * x, sine * y, (1.0 - sine * sine).sqrt());
+        let wi = Frame::from_z(self.to_sun).to_world(local);
+        let le = self.radiance(context, sine, lambda);
+        EmittedRay::from_infinity(context.tables, -wi, u_position, le, emitted_pdf(sine))
     }
 
     pub(in crate::light) fn pdf_le(
@@ -118,8 +131,8 @@ impl SunLight {
         ray: &Ray,
         _: Option<Normal3>,
     ) -> (f32, f32) {
-        let pdf_w = self.sine_within(-ray.direction).map_or(0.0, |_| warp::narrow_cone_pdf(one_minus_cos()));
-        (1.0 / context.tables.scene_sphere.cross_section(), pdf_w)
+        let pdf_w = self.sine_within(-ray.direction).map_or(0.0, emitted_pdf);
+        (context.tables.entry_pdf(ray.direction), pdf_w)
     }
 
     pub(in crate::light) fn power(&self, context: &LightContext) -> LightPower {

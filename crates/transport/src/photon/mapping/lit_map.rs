@@ -201,7 +201,7 @@ impl LitMap {
 /// Keeps a photon that belongs into the map.
 fn visit(plan: &MapPlan, index: u64, vertex: &PhotonVertex<'_>, kept: &mut Vec<Shot>) -> Onward {
     let wide = wide_lobes(vertex.bsdf, plan.walk.sharp_alpha);
-    if !wide.is_empty() && plan.content.holds(vertex.trail) {
+    if wide.intersects(vertex.lobes) && plan.content.holds(vertex.trail) {
         let ng = vertex.surface.point.ng;
         let photon = StoredPhoton {
             position: vertex.surface.point.p,

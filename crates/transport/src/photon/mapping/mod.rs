@@ -36,7 +36,7 @@ use crate::integrator::{Control, Integrator, PassEnd, Passes, RayCounts, ReportE
 use crate::lpe::PathExpressions;
 use crate::path::camera_pass::{CameraPass, CameraPath, Follow, FollowedPath, Tracer};
 use crate::photon::estimate::EstimateScratch;
-use crate::photon::{PhotonEmitter, PhotonWalk};
+use crate::photon::{EmissionSettings, PhotonEmitter, PhotonWalk, Target};
 
 /// Photons of the caustic map are other ones than those of the global map.
 const GLOBAL_STREAM: u32 = 0;
@@ -179,7 +179,9 @@ impl Maps {
             max_radius: settings.caustic_radius,
             estimate: settings.estimate,
         };
-        let (caustic, caustic_places) = LitMap::fill(scene, &emitter, &plan);
+        let target = Target::SharpShapes;
+        let aim = EmissionSettings { target, sharp_alpha: settings.sharp_alpha, ..EmissionSettings::default() };
+        let (caustic, caustic_places) = LitMap::fill(scene, &PhotonEmitter::aimed(scene, &aim), &plan);
         let precompute =
             |map, places: &[_], step| (settings.precompute > 0).then(|| Precomputed::new(map, places, step));
         let global_irradiance = precompute(&global, &global_places, settings.precompute as usize);

@@ -1,0 +1,70 @@
+//! Parameters of scene files that say how photons leave lights and walk, for every method that follows photons.
+
+use etendue_scene::parameters::{ParameterSpec, Parameters};
+
+use super::{Absorption, EmissionSettings, MapScheme, PhotonPattern, Target};
+
+/// How photons leave and walk, as a scene asks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhotonSettings {
+    /// In what pattern they leave.
+    pub pattern: PhotonPattern,
+    /// What becomes of what surfaces absorb.
+    pub absorption: Absorption,
+    /// How they find the cells of projection maps.
+    pub scheme: MapScheme,
+    /// Cells along the side of a projection map; 0 for no maps.
+    pub n_cells: u32,
+}
+
+impl PhotonSettings {
+    /// `photonpattern`.
+    pub const PATTERN: ParameterSpec = ParameterSpec {
+        name: "photonpattern",
+        kind: "string",
+        default: "qmc",
+        unit: "",
+        doc: "pattern in which photons leave: qmc (scrambled Sobol), stratified, random, or grid (shows in caustics)",
+    };
+    /// `absorption`.
+    pub const ABSORPTION: ParameterSpec = ParameterSpec {
+        name: "absorption",
+        kind: "string",
+        default: "roulette",
+        unit: "",
+        doc: "photons become fewer (roulette), or for comparison weaker (scale) or many (branch)",
+    };
+    /// `projectioncells`.
+    pub const CELLS: ParameterSpec = ParameterSpec {
+        name: "projectioncells",
+        kind: "integer",
+        default: "128",
+        unit: "",
+        doc: "cells along the side of a projection map, at most 1024; 0 for no maps",
+    };
+    /// `projectionscheme`.
+    pub const SCHEME: ParameterSpec = ParameterSpec {
+        name: "projectionscheme",
+        kind: "string",
+        default: "cell",
+        unit: "",
+        doc: "photons choose an active cell (cell), or directions until one is active (retry)",
+    };
+
+    /// Reads the four parameters.
+    pub fn read(p: &mut Parameters<'_, '_>) -> Self {
+        Self {
+            pattern: p.choice("photonpattern", "qmc", &PhotonPattern::NAMES),
+            absorption: p.choice("absorption", "roulette", &Absorption::NAMES),
+            n_cells: p.count_within("projectioncells", 128, 0, 1024),
+            scheme: p.choice("projectionscheme", "cell", &MapScheme::NAMES),
+        }
+    }
+
+    /// What photons for a target are sent by.
+    #[must_use]
+    pub fn towards(&self, target: Target, sharp_alpha: f32) -> EmissionSettings {
+        let target = if self.n_cells == 0 { Target::Anything } else { target };
+        EmissionSettings { target, scheme: self.scheme, n_cells: self.n_cells, sharp_alpha }
+    }
+}
