@@ -123,6 +123,7 @@ impl Progressive {
             wavelengths: settings.wavelengths,
             sampler,
             stream: 0,
+            ..PhotonWalk::default()
         };
         let pilots = PhotonWalk { stream: 1, ..walk };
         let first_radius =
