@@ -111,7 +111,7 @@ fn maps_change_the_hit_rate_and_nothing_else() {
         assert!(aimed_rate > 1.3 * rate, "{name}: hit rate {rate} without a map and {aimed_rate} with one");
         let retry = EmissionSettings { scheme: MapScheme::Retry, ..aimed };
         let (retried, _, retried_rate) = caustics(&scene, &retry, n / 2, PhotonPattern::Random);
-        expect_agreement(&format!("{name}: first hits by retries"), &retried, &aimed_first, 0.3);
+        expect_agreement(&format!("{name}: first hits by retries"), &retried, &aimed_first, 0.5);
         expect_near(name, retried_rate, aimed_rate, 0.15);
     }
 }
