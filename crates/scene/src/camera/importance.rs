@@ -7,7 +7,7 @@
 //! `pdf_w` of directions that [`Camera::sample_ray`](super::Camera::sample_ray) has for uniform raster positions, so
 //! that `we cos = pdf_a pdf_w`. Where a position or a direction is fixed, its density is discrete and counts as 1.
 
-use etendue_math::{Point2, Point3, Ray, Vector3};
+use etendue_math::{Point2, Point3, Ray, Transform, Vector3};
 
 use super::{Camera, Fisheye, Orthographic, Perspective, Projection, Spherical};
 
@@ -127,13 +127,31 @@ fn towards(p: Point3) -> Option<(Ray, LensPoint)> {
     Some((ray, LensPoint { p_lens: Point3::ORIGIN, pdf_w: to_p.length_squared() }))
 }
 
+/// What the importance of camera space is multiplied by in the world, for a unit direction of camera space: a transform M spreads
+/// what a pixel sees over `|det M| / |M d|` times the area across the ray. 1 unless the camera is scaled.
+fn spread(world_from_camera: &Transform, direction: Vector3) -> f32 {
+    let [x, y, z] = [Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.0, 1.0, 0.0), Vector3::new(0.0, 0.0, 1.0)]
+        .map(|axis| world_from_camera.vector(axis));
+    let volume = x.cross(y).dot(z).abs();
+    world_from_camera.vector(direction).length() / volume
+}
+
+impl FilmImportance {
+    /// In the world.
+    fn spread(self, world_from_camera: &Transform, direction: Vector3) -> Self {
+        let scale = spread(world_from_camera, direction);
+        Self { we: self.we * scale, pdf_a: self.pdf_a * scale, ..self }
+    }
+}
+
 impl Camera {
     /// What the film receives along a ray that starts on the lens and has unit direction; `None` where it reaches no pixel.
     /// Rays of a parallel bundle without a lens cannot be met by chance, and which way leads through a real lens is not known:
     /// `None`.
     #[must_use]
     pub fn we(&self, ray: &Ray) -> Option<FilmImportance> {
-        let mut ray_camera = self.transform_at(ray.time).inverse().ray(ray);
+        let world_from_camera = self.transform_at(ray.time);
+        let mut ray_camera = world_from_camera.inverse().ray(ray);
         ray_camera.direction = ray_camera.direction.try_normalized()?;
         let result = match &self.projection {
             Projection::Perspective(camera) => camera.film_importance(&ray_camera),
@@ -142,7 +160,8 @@ impl Camera {
             Projection::Fisheye(camera) => camera.film_importance(&ray_camera),
             Projection::Realistic(_) => None,
         };
-        result.filter(|result| self.is_lit(result.p_film))
+        let result = result.filter(|result| self.is_lit(result.p_film))?;
+        Some(result.spread(&world_from_camera, ray_camera.direction))
     }
 
     /// Densities `(pdf_a, pdf_w)` of a camera ray for uniform raster positions; zeros if the camera has no such ray.
@@ -177,6 +196,7 @@ impl Camera {
         if !self.is_lit(film.p_film) {
             return None;
         }
+        let film = film.spread(&world_from_camera, (p_camera - lens.p_lens).try_normalized()?);
         let p_lens = world_from_camera.point(lens.p_lens);
         let to_lens = p_lens - p;
         Some(CameraWiSample {

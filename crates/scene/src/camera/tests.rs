@@ -348,6 +348,34 @@ fn light_paths_and_camera_paths_agree() {
     }
 }
 
+/// A scaled camera is the same camera as long as lens and window are not lengths: what it sees of a glowing wall stays 1.
+#[test]
+fn scaled_cameras_take_the_same_light() {
+    let resolution = [1, 1];
+    let stretched = Transform::scale(-2.0, 3.0, 0.5).unwrap();
+    for (i, (name, projection)) in all_kinds(resolution).into_iter().enumerate() {
+        let is_sphere = is_point(&projection);
+        let placed = AnimatedTransform::constant(stretched);
+        let camera = Camera::new(projection, placed, Shutter::default(), resolution, whole(resolution));
+        let mut rng = Rng::new(hash64(&[51, i as u64]), 1);
+        let film: Moments = (0..40_000)
+            .map(|_| {
+                let u = rng.next_point2();
+                let (p, n, area) = if is_sphere {
+                    let d = warp::sample_uniform_sphere(u);
+                    (Point3::ORIGIN + d * 2.0, -d, 16.0 * std::f32::consts::PI)
+                } else {
+                    let p = Point3::new(60.0 * u.x - 30.0, 60.0 * u.y - 30.0, 5.0);
+                    (p, Vector3::new(0.0, 0.0, -1.0), 3600.0)
+                };
+                let sample = camera.sample_wi(p, 0.0, rng.next_point2());
+                sample.map_or(0.0, |s| f64::from(area * n.dot(s.wi) * s.we / s.pdf_w))
+            })
+            .collect();
+        mean_test(&film, 1.0, SIGNIFICANCE).unwrap_or_else(|message| panic!("{name}: {message}"));
+    }
+}
+
 /// Light that reaches the film beside the crop counts nothing.
 #[test]
 fn crop_takes_no_light() {
