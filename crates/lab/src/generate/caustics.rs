@@ -108,8 +108,8 @@ fn prism_screen(prism: &str) -> String {
     format!(
         r#"# A prism of dense flint glass throws the spectrum of a lamp onto a screen (SPEC SCENE-17).
 #
-# Light of a narrow lamp passes a slit and the prism; the screen stands 2 m behind. Photons show it quickly, paths from the
-# camera hardly ever find the lamp. The notebook has three indices, for red, green and blue: --wavelengths bands.
+# Light of a narrow lamp passes a slit and the prism; the screen stands 2 m behind. Paths from the camera hardly ever find the
+# lamp; --integrator light:maxdepth=8 and photons do. The notebook has three indices, for red, green and blue: --wavelengths bands.
 #
 # Lengths are in metres; y points up.
 #   lamp     0.04 wide, 1.2 high, 3 m from the prism, 20 000 lumen
