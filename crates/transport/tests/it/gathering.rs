@@ -3,6 +3,7 @@
 use std::f32::consts::PI;
 
 use etendue_math::{Point3, Ray, Vector3};
+use etendue_scene::bsdf::Lobes;
 use etendue_spectrum::{Sampled, Wavelengths, Xyz, flux_to_xyz, lift};
 use etendue_transport::path::camera_pass::Tracer;
 use etendue_transport::photon::estimate::gathering::{
@@ -76,7 +77,8 @@ fn light_in_a_sphere() {
     builder.scale_power(1.0 / N as f32);
     let map = builder.balance(N);
     let estimate = MapEstimate { density: DensityEstimate::default(), k: 400, max_radius: 1.0 };
-    let place = LitPlace { p: surface.point.p, wo: surface.wo, bsdf: &bsdf, lambda: &lambda };
+    let place =
+        LitPlace { p: surface.point.p, wo: surface.wo, bsdf: &bsdf, lobes: Lobes::ALL, lambda: &lambda };
     let found = estimate.radiance(&map, &place, &mut EstimateScratch::default());
     // Some of the 400, where the sphere has turned, came from below the tangent plane.
     assert!((370..=400).contains(&found.density.n_photons) && !found.density.is_limited);

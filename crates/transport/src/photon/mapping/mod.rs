@@ -180,7 +180,8 @@ impl Maps {
             estimate: settings.estimate,
         };
         let target = Target::SharpShapes;
-        let aim = EmissionSettings { target, sharp_alpha: settings.sharp_alpha, ..EmissionSettings::default() };
+        let aim =
+            EmissionSettings { target, sharp_alpha: settings.sharp_alpha, ..EmissionSettings::default() };
         let (caustic, caustic_places) = LitMap::fill(scene, &PhotonEmitter::aimed(scene, &aim), &plan);
         let precompute =
             |map, places: &[_], step| (settings.precompute > 0).then(|| Precomputed::new(map, places, step));

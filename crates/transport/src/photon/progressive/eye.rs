@@ -290,13 +290,7 @@ impl Eye<'_> {
             if f.is_black() {
                 continue;
             }
-            let position = path.layers.position();
-            path.layers.scatter(event);
-            for event in self.photons.trail(index).events().rev() {
-                path.layers.scatter(event);
-            }
-            path.layers.emit(f * flux);
-            path.layers.return_to(&position);
+            path.layers.emit_trail(event, self.photons.trail(index).events().rev(), f * flux);
         }
     }
 }
