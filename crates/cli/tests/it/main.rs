@@ -14,6 +14,7 @@ mod outputs;
 mod parts;
 mod real_scenes;
 mod references;
+mod scenes;
 mod stand_ins;
 mod statistics;
 mod support;

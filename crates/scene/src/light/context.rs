@@ -1,5 +1,7 @@
 //! What lights need to know besides themselves, and what they answer.
 
+use std::sync::Arc;
+
 use etendue_geometry::{Geometry, Reference};
 use etendue_math::{Bounds3, Frame, Motion, Normal3, Point2, Point3, Ray, Vector3, lerp, warp};
 use etendue_spectrum::{Sampled, SpectrumTables};
@@ -8,7 +10,7 @@ use crate::texture::Textures;
 
 use super::{
     AreaEmission, GoniometricLight, IesLight, InfiniteImageLight, InfinitePortalLight, LightImage,
-    LightImageId, LightMotionId, LuminousProfile, LuminousProfileId, ProjectionLight, SkyLight,
+    LightImageId, LightMotionId, LuminousProfile, LuminousProfileId, Photometry, ProjectionLight, SkyLight,
 };
 
 /// A sphere around the scene: lights at infinity shine on its cross-section.
@@ -164,6 +166,13 @@ impl LightTables {
     pub fn add_profile(&mut self, profile: LuminousProfile) -> LuminousProfileId {
         self.profiles.push(profile);
         LuminousProfileId(self.profiles.len() as u32 - 1)
+    }
+
+    /// The profile that was made of a table, if there is one.
+    #[must_use]
+    pub fn profile_of(&self, photometry: &Arc<Photometry>) -> Option<LuminousProfileId> {
+        let index = self.profiles.iter().position(|profile| profile.is_of(photometry));
+        index.map(|index| LuminousProfileId(index as u32))
     }
 
     /// The profile of that id.

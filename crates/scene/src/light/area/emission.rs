@@ -379,6 +379,10 @@ fn read_falloff(p: &mut Parameters, tables: &mut LightTables) -> Option<Falloff>
         }
     }
     let photometry = build::read_photometry(p, "profile")?;
+    // Shapes may be many.
+    if let Some(id) = tables.profile_of(&photometry) {
+        return Some(Falloff::Table(id));
+    }
     if photometry.varies_around_axis(0.05) {
         let message = "the luminaire's light depends on the angle around its axis; surfaces emit the mean";
         p.diagnostics().warning(span, message);

@@ -6,6 +6,7 @@
 //! the surface L stays what it is there, lest it grow without bound.
 
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 use etendue_math::{Frame, PiecewiseConstant1, Point2, Vector3, safe_acos};
 
@@ -27,6 +28,8 @@ const MIN_COSINE: f32 = 0.05;
 /// Radiance by the angle to the normal, over that of a matte surface of the same flux.
 #[derive(Clone, Debug)]
 pub struct LuminousProfile {
+    /// What it was made of.
+    table: Arc<Photometry>,
     /// pi I / flux at equal angles.
     intensity: Vec<f32>,
     /// In proportion to radiance over x = sin^2 theta; d omega cos theta = dx d phi / 2.
@@ -37,7 +40,7 @@ pub struct LuminousProfile {
 impl LuminousProfile {
     /// From a table; `None` if it has no light in front.
     #[must_use]
-    pub fn new(photometry: &Photometry) -> Option<Self> {
+    pub fn new(photometry: &Arc<Photometry>) -> Option<Self> {
         let frame = Frame::from_z(photometry.axis());
         let mean = |theta: f32| {
             let around = (0..N_AZIMUTHS).map(|i| {
@@ -48,8 +51,12 @@ impl LuminousProfile {
             around.sum::<f32>() / N_AZIMUTHS as f32
         };
         let candela: Vec<f32> = (0..=N_ANGLES).map(|i| mean(angle(i as f32))).collect();
-        let raw =
-            Self { intensity: candela, distribution: PiecewiseConstant1::new(&[1.0], 0.0, 1.0), lumens: 0.0 };
+        let raw = Self {
+            table: photometry.clone(),
+            intensity: candela,
+            distribution: PiecewiseConstant1::new(&[1.0], 0.0, 1.0),
+            lumens: 0.0,
+        };
         // Midpoints between the angles, where radiance times cosine is nearly linear.
         let n = 4 * N_ANGLES;
         let step = f64::from(angle(N_ANGLES as f32)) / n as f64;
@@ -65,6 +72,12 @@ impl LuminousProfile {
         let scaled = Self { intensity: raw.intensity.iter().map(|i| i * factor).collect(), ..raw };
         let weights: Vec<f32> = (0..N_CELLS).map(|cell| scaled.largest_within(cell)).collect();
         Some(Self { distribution: PiecewiseConstant1::new(&weights, 0.0, 1.0), lumens, ..scaled })
+    }
+
+    /// True if it was made of that table.
+    #[must_use]
+    pub fn is_of(&self, photometry: &Arc<Photometry>) -> bool {
+        Arc::ptr_eq(&self.table, photometry)
     }
 
     /// The largest radiance within a cell: at its ends, and at the angles of the table inside of it.

@@ -77,7 +77,7 @@ fn the_size_of_a_profile_may_be_changed() {
 /// but for what varies within a cell.
 #[test]
 fn photons_of_a_profile_have_equal_power() {
-    let profile = LuminousProfile::new(&batwing()).expect("it has light");
+    let profile = LuminousProfile::new(&Arc::new(batwing())).expect("it has light");
     let pdf = |w: Vector3| profile.pdf_w(w.z);
     let sample = |rng: &mut Rng| Some(profile.sample(rng.next_point2()));
     sphere_chi_square(60_000, seed("profile"), sample, pdf, SIGNIFICANCE)
@@ -108,7 +108,7 @@ fn profiles_are_checked() {
     assert!(missing.len() == 1 && missing[0].contains("was not loaded"), "{missing:?}");
     let dark =
         Photometry::new(PhotometricWeb::C, vec![90.0, 180.0], vec![0.0], vec![0.0, 5.0]).expect("a table");
-    assert!(LuminousProfile::new(&dark).is_none());
+    assert!(LuminousProfile::new(&Arc::new(dark)).is_none());
     let uneven =
         Photometry::new(PhotometricWeb::C, vec![0.0, 90.0], vec![0.0, 180.0], vec![9.0, 0.0, 9.0, 8.0]);
     assert!(uneven.expect("a table").varies_around_axis(0.05) && !batwing().varies_around_axis(0.05));
