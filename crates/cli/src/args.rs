@@ -130,7 +130,7 @@ pub(crate) struct PhotonsArguments {
     #[arg(short, long = "output", value_name = "OUT")]
     pub(crate) outputs: Vec<PathBuf>,
     /// Photons that leave the lights
-    #[arg(long, value_name = "N", default_value = "100000", value_parser = clap::value_parser!(u64).range(1..=100_000_000), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value = "100000", value_parser = clap::value_parser!(u64).range(1..=10_000_000), allow_negative_numbers = true)]
     pub(crate) photons: u64,
     /// Which of them are kept
     #[arg(long, value_enum, default_value = "all")]
