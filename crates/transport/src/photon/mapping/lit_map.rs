@@ -107,6 +107,8 @@ struct Shot {
 const MOST_EMITTED: u64 = 30;
 /// The least that are emitted: without any by then, there is nothing to be found.
 const LEAST_EMITTED: u64 = 20_000;
+/// After so many in vain there is nothing to be found, such as caustics where nothing mirrors or refracts.
+const FRUITLESS: u64 = 200_000;
 /// Photons whose surroundings tell how dense a map is.
 const N_PROBES: usize = 1000;
 /// Of their radii, the one that most do not exceed, and what it is multiplied by to be the greatest radius of all.
@@ -220,6 +222,9 @@ fn visit(plan: &MapPlan, index: u64, vertex: &PhotonVertex<'_>, kept: &mut Vec<S
 fn next_round(wanted: u64, n_stored: u64, n_emitted: u64, most: u64) -> u64 {
     if n_stored >= wanted || n_emitted >= most {
         return 0;
+    }
+    if n_stored == 0 {
+        return FRUITLESS.min(most).saturating_sub(n_emitted);
     }
     let missing = wanted - n_stored;
     let share = (n_stored as f64 / n_emitted as f64).max(1e-3);
