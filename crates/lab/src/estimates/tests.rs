@@ -67,6 +67,7 @@ fn gathering_agrees_with_paths() {
     let study = gathering(&settings, &mut |_| ());
     for line in study.summary.lines().skip(1) {
         let mean: f64 = line.rsplit(' ').next().and_then(|m| m.parse().ok()).expect("a mean");
-        assert!((mean - 1.0).abs() < 0.1, "{}", study.summary);
+        // Five times what one set of 400 photons differs from another by, a twentieth.
+        assert!((mean - 1.0).abs() < 0.25, "{}", study.summary);
     }
 }
