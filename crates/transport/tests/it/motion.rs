@@ -3,7 +3,8 @@
 use etendue_math::statistics::Moments;
 use etendue_scene::document::Entity;
 
-use crate::support::{Setup, expect_mean, luminance, render_passes};
+use crate::strategies::{blocks, ceiling_light, open_box};
+use crate::support::{Setup, expect_mean, expect_same_image, luminance, render_passes};
 
 /// Pixels across 2 m.
 const SIZE: u32 = 64;
@@ -100,4 +101,18 @@ fn turning_follows_the_arc() {
         assert_eq!(at(-20.0, 0.6), 0.0);
         assert_eq!(at(110.0, 0.6), 0.0);
     }
+}
+
+/// A lamp that moves and turns while the shutter is open lights a room alike whether it is sampled, run into, or both.
+#[test]
+fn moving_lamps_are_found_both_ways() {
+    let motion = "ActiveTransform EndTime Translate 0.5 -0.6 0.2 Rotate 25 0 0 1 ActiveTransform All";
+    let world = open_box(&format!("AttributeBegin {motion} {} AttributeEnd", ceiling_light(0.3)));
+    let render = |lights: &str, n_passes| {
+        let integrator = format!("\"integer maxdepth\" 3 \"string lights\" \"{lights}\"");
+        blocks(&format!("moving lamp by {lights}"), &world, &integrator, n_passes)
+    };
+    let (both, lights, scattering) = (render("both", 300), render("lights", 300), render("scattering", 600));
+    expect_same_image("both and lights", &both, &lights, 0.08);
+    expect_same_image("both and scattering", &both, &scattering, 0.15);
 }
