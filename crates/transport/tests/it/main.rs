@@ -17,6 +17,7 @@ mod features;
 mod furnace;
 mod gathering;
 mod layers;
+mod light_tracing;
 mod media;
 mod merging;
 mod motion;
