@@ -359,6 +359,8 @@ pub(crate) enum StudyName {
     Gathering,
     /// Error of the patterns in which photons leave lights, and of the ways to treat absorption
     PhotonEmission,
+    /// Trees, grids and lists that find the nearest photons; processor times, in one thread
+    Neighbours,
 }
 
 /// Arguments of `brdf`.

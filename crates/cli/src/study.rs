@@ -8,8 +8,9 @@ use etendue::lab::estimates::{
     consistency, edge, gathering, handle, walls,
 };
 use etendue::lab::{
-    AcceleratorSettings, ConvergenceSettings, EmissionStudySettings, LightSizeSettings, PixelSettings,
-    SceneSizeSettings, accelerators, convergence, light_size, photon_emission, pixel, scene_size,
+    AcceleratorSettings, ConvergenceSettings, EmissionStudySettings, LightSizeSettings, NeighbourSettings,
+    PixelSettings, SceneSizeSettings, accelerators, convergence, light_size, neighbours, photon_emission,
+    pixel, scene_size,
 };
 
 use crate::args::{StudyArguments, StudyName};
@@ -88,6 +89,12 @@ fn measure(arguments: &StudyArguments) -> Result<(&'static str, String, String, 
                 if quick { EmissionStudySettings::quick(seed) } else { EmissionStudySettings::full(seed) };
             let study = photon_emission(&settings, &mut note);
             ("photon-emission", study.csv(), study.svg(), study.summary())
+        }
+        StudyName::Neighbours => {
+            let settings = if quick { NeighbourSettings::quick(seed) } else { NeighbourSettings::full(seed) };
+            let study =
+                in_one_thread(|| neighbours(&settings, &thread_time, &mut |what| report::note(what)))?;
+            ("neighbours", study.csv(), study.svg(), study.summary())
         }
     })
 }

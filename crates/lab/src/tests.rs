@@ -7,12 +7,13 @@ use roxmltree::Document;
 use crate::convergence::{ErrorCurve, Experiment};
 use crate::estimator::LightChoice;
 use crate::light_size::{Room, SizeCurve, SizePoint, WAYS};
+use crate::neighbours::{Distribution, Making, Measurement};
 use crate::plot::{Axes, Mark, Panel, Series, draw};
 use crate::scene_size::{KINDS, Laws, RayCost};
 use crate::{
-    Convergence, ConvergenceSettings, Estimator, LightSize, LightSizeSettings, PixelSettings, PixelStudy,
-    ReferenceSettings, SamplerChoice, SceneSize, SceneSizeSettings, StudyScene, convergence, light_size,
-    pixel, scene_size,
+    Convergence, ConvergenceSettings, Estimator, LightSize, LightSizeSettings, NeighbourSettings,
+    PixelSettings, PixelStudy, ReferenceSettings, SamplerChoice, SceneSize, SceneSizeSettings, StudyScene,
+    convergence, light_size, neighbours, pixel, scene_size,
 };
 
 fn is_slow() -> bool {
@@ -397,4 +398,42 @@ fn axes_over_many_decades_have_powers_of_ten() {
     };
     check_svg(&panel(1e3), &["100", "200"], 1, 2);
     check_svg(&panel(1e6), &["10⁰", "10³", "10⁶"], 1, 2);
+}
+
+/// All structures find as many photons, the clock is the caller's, and the result is complete as a table and as a figure
+/// (SPEC EXP-13). Photons that come cell after cell make a tree that is not balanced deeper (SPEC KD-12).
+#[test]
+fn structures_of_photons_are_compared() {
+    let settings = NeighbourSettings {
+        sizes: vec![300, 2000],
+        ks: vec![1, 50, 120],
+        n_questions: 40,
+        n_rounds: 1,
+        longest_list: 300,
+        seed: 1,
+    };
+    let ticks = Cell::new(0);
+    let clock = || {
+        ticks.set(ticks.get() + 1);
+        Duration::from_millis(ticks.get())
+    };
+    let study = neighbours(&settings, &clock, &mut |_| ());
+    // Three scenes; five structures with 2 questions of 300 photons, four with 4 of 2000.
+    assert_eq!((study.makings.len(), study.measurements.len()), (3 * 9, 3 * (5 * 2 + 4 * 4)));
+    for m in &study.measurements {
+        let same = |other: &&Measurement| {
+            (other.distribution, other.n_points, other.k) == (m.distribution, m.n_points, m.k)
+        };
+        assert!(study.measurements.iter().filter(same).all(|other| other.n_found == m.n_found), "{m:?}");
+        assert!(m.k.is_none_or(|k| m.n_found == k as f64), "{m:?}");
+        assert_eq!(m.time_s, 1e-3 / 40.0);
+    }
+    let depth = |d: Distribution| {
+        let of = |m: &&Making| m.distribution == d && m.n_points == 2000 && m.depth.is_some();
+        study.makings.iter().find(of).and_then(|m| m.depth).expect("it is a tree")
+    };
+    assert!(depth(Distribution::Cells) > depth(Distribution::Room), "{:?}", study.makings);
+    assert_eq!(study.csv().lines().count(), 1 + 3 * 9 + 3 * 26);
+    assert_eq!(study.summary().lines().count(), 2 + 3 * 4);
+    assert!(study.svg().contains("room in cells: among 2000 photons"));
 }
