@@ -126,7 +126,7 @@ pub(crate) enum WavelengthArgument {
 pub(crate) struct PhotonsArguments {
     /// Scene file
     pub(crate) scene: PathBuf,
-    /// Output: an image shows photons as dots, .ply holds them as points; with --at, .svg and .csv tell where they come from; may repeat
+    /// Output: an image shows photons as dots, .ply holds them as points, .photons is a photon map; with --at, .svg and .csv tell where they come from; may repeat
     #[arg(short, long = "output", value_name = "OUT")]
     pub(crate) outputs: Vec<PathBuf>,
     /// Photons that leave the lights

@@ -11,9 +11,19 @@ use crate::args::InfoArguments;
 use crate::failure::Result;
 use crate::list::print;
 use crate::load::{LoadedScene, Overrides, load};
+use crate::photon_file;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &InfoArguments) -> Result<()> {
+    if photon_file::is_map(&arguments.scene) {
+        let description = photon_file::describe(&arguments.scene)?;
+        if arguments.json {
+            print(&description.to_string());
+        } else {
+            print_lines("", &description);
+        }
+        return Ok(());
+    }
     let loaded = load(&arguments.scene, &Overrides::default(), PathExpressions::default(), arguments.json)?;
     let description = describe(&loaded);
     if arguments.json {

@@ -15,6 +15,7 @@ mod load;
 mod merge;
 mod metadata;
 mod outputs;
+mod photon_file;
 mod photons;
 mod progress;
 mod render;

@@ -11,10 +11,10 @@ use etendue::scene::Scene;
 use crate::args::{PhotonKindArgument, PhotonsArguments};
 use crate::failure::{Failure, Result};
 use crate::load::{self, Overrides};
-use crate::{list, outputs, report};
+use crate::{list, outputs, photon_file, report};
 
 /// What is written besides pictures.
-const FORMATS: [&str; 3] = ["ply", "svg", "csv"];
+const FORMATS: [&str; 4] = ["ply", "svg", "csv", photon_file::EXTENSION];
 
 /// Runs the command.
 pub(crate) fn run(arguments: &PhotonsArguments) -> Result<()> {
@@ -97,6 +97,7 @@ fn write_all(
     };
     for path in &arguments.outputs {
         match bytes(path) {
+            _ if photon_file::is_map(path) => photon_file::write(path, scene, arguments)?,
             Some(bytes) => write_atomically(path, |file| file.write_all(&bytes))
                 .map_err(|error| Failure::Running(format!("cannot write {}: {error}", path.display())))?,
             None => write_image(path, &cloud.picture(scene, settings))

@@ -238,3 +238,30 @@ fn bench() {
     assert_eq!(text.lines().count(), 2 + figures.len(), "{text}");
     assert!(folder.files().is_empty());
 }
+
+/// A photon map is written as a file, the same for any number of threads, and told about; broken ones are errors.
+#[test]
+fn photon_maps() {
+    let folder = Folder::with_scene(ROOM);
+    for (threads, out) in [("1", "a.photons"), ("2", "b.photons")] {
+        let arguments = ["photons", "scene.pbrt", "--photons", "9000", "-o", out];
+        let status = folder.command(&arguments).env("RAYON_NUM_THREADS", threads).status();
+        assert!(status.expect("it starts").success());
+    }
+    let bytes = folder.read("a.photons");
+    assert!(bytes == folder.read("b.photons"));
+    let facts = folder.run("info a.photons --json").expect(0).json();
+    assert_eq!(facts["photons"]["emitted"], 9000);
+    assert!(facts["photons"]["stored"].as_u64().is_some_and(|n| n > 1000), "{facts}");
+    folder.run("info a.photons").expect(0);
+    let broken: [(&str, &[u8], &str); 3] = [
+        ("short.photons", &bytes[..bytes.len() / 2], "cut short"),
+        ("empty.photons", b"", "not a photon map"),
+        ("other.photons", b"ETPHOTON\x09\0\0\0", "version 9"),
+    ];
+    for (name, bytes, says) in broken {
+        folder.write(name, bytes);
+        folder.run(&format!("info {name}")).expect(2).says(says);
+    }
+    folder.run("info missing.photons").expect(2).says("missing.photons");
+}

@@ -64,10 +64,12 @@ impl GrowingTree {
         let (mut node, mut axis, mut depth) = (0, 0, 1);
         while node != new {
             let Node { item: here, children } = &mut self.nodes[node as usize];
-            // Equal ones go to either side, so that many photons at one place do not make a list.
+            // On a plane all are equal along one axis, and go right: were they on both sides, both would be searched. Those at
+            // the very same place go to either side, so that they do not make a list.
             let is_right = match item.p[axis].total_cmp(&here.p[axis]) {
                 std::cmp::Ordering::Less => false,
                 std::cmp::Ordering::Greater => true,
+                std::cmp::Ordering::Equal if item.p != here.p => true,
                 std::cmp::Ordering::Equal => mix64(u64::from(new) << 32 | u64::from(node)) & 1 == 1,
             };
             let child = &mut children[usize::from(is_right)];

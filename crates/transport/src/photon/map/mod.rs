@@ -16,6 +16,7 @@ mod direction;
 mod power;
 mod radius;
 mod record;
+mod trace;
 
 #[cfg(test)]
 mod tests;
