@@ -8,6 +8,7 @@ mod bench;
 mod brdf;
 mod compare;
 mod convert;
+mod exposures;
 mod failure;
 mod info;
 mod list;
@@ -41,6 +42,8 @@ fn main() -> ExitCode {
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
         Command::Tonemap(arguments) => tonemap::run(&arguments),
+        Command::Hdr(arguments) => exposures::hdr(&arguments),
+        Command::Fuse(arguments) => exposures::fusion(&arguments),
         Command::Study(arguments) => study::run(&arguments),
         Command::Brdf(arguments) => brdf::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

@@ -1,4 +1,4 @@
-//! `compare`, `tonemap`, `study` and `bench`.
+//! `compare`, `tonemap`, `hdr`, `fuse`, `study` and `bench`.
 
 use etendue::image::Image;
 use etendue::io::images::write_image;
@@ -264,4 +264,37 @@ fn photon_maps() {
         folder.run(&format!("info {name}")).expect(2).says(says);
     }
     folder.run("info missing.photons").expect(2).says("missing.photons");
+}
+
+/// A rendered picture, photographed by several exposures, comes back; and its exposures blend.
+#[test]
+fn exposures_are_combined() {
+    let folder = Folder::with_scene(ROOM);
+    folder.render("a", "--spp 16");
+    for (name, stops) in [("short", "-4"), ("middle", "-1"), ("long", "2")] {
+        folder.run(&format!("tonemap a.exr -o {name}.png --exposure {stops}")).expect(0);
+    }
+    folder.run("hdr short.png middle.png long.png -o hdr.exr --times 1/16,1/2,4 --response srgb").expect(0);
+    let pixels = |name: &str| folder.image(name).rgb_pixels().expect("colour");
+    for (found, there) in pixels("hdr.exr").iter().zip(pixels("a.exr")) {
+        // Below white of the shortest and above a few levels of the longest exposure.
+        if there.iter().all(|v| (0.01..15.0).contains(v)) {
+            assert!((found[1] / there[1] - 1.0).abs() < 0.05, "{found:?} {there:?}");
+        }
+    }
+    folder.run("hdr short.png middle.png long.png -o recovered.exr --times 0.0625,0.5,4").expect(0);
+    folder.run("fuse short.png middle.png long.png -o fused.png").expect(0);
+    assert_eq!(folder.image("fused.png").width, folder.image("a.exr").width);
+    for (wrong, says) in [
+        ("hdr short.png long.png -o x.exr", "--times"),
+        ("hdr short.png long.png -o x.exr --times 1", "1 times for 2 pictures"),
+        ("hdr short.png long.png -o x.exr --times 1,-1", "time in seconds"),
+        ("hdr short.png -o x.exr --times 1", "at least two"),
+        ("hdr short.png long.png -o x.exr --times 1,1", "same time"),
+        ("hdr short.png none.png -o x.exr --times 1,2", "none.png"),
+        ("fuse short.png -o x.png", "at least two"),
+        ("fuse short.png long.png -o x.png --contrast -1", "from 0 to 16"),
+    ] {
+        folder.run(wrong).expect(2).says(says);
+    }
 }

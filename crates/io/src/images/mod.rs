@@ -15,6 +15,7 @@
 
 mod atomic;
 mod error;
+mod exif;
 mod netpbm;
 mod openexr;
 mod pfm;
@@ -32,6 +33,7 @@ use image::ImageFormat;
 
 pub use atomic::{check_writable, write_atomically};
 pub use error::{ImageError, ImageErrorCause};
+pub use exif::exposure_of_photograph;
 pub use write::{png_bytes, write_image, write_png, write_ppm, write_ppm_ascii};
 
 /// Most pixels of a picture that is read.
