@@ -84,7 +84,9 @@ fn photograph(path: &Path) -> Result<Photograph> {
     let Some(pixels) = image.rgb_pixels() else {
         return Err(Failure::Usage(format!("{}: there are no channels R, G, B or Y", path.display())));
     };
-    let encoded = pixels.into_iter().map(|pixel| pixel.map(|v| srgb_encode(v.clamp(0.0, 1.0)))).collect();
+    // NaN becomes black: it would spread over the whole picture.
+    let encode = |v: f32| srgb_encode(v.max(0.0).min(1.0));
+    let encoded = pixels.into_iter().map(|pixel| pixel.map(encode)).collect();
     Ok(Photograph { width: image.width, height: image.height, pixels: encoded })
 }
 

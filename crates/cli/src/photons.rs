@@ -61,6 +61,11 @@ fn check_outputs(arguments: &PhotonsArguments) -> Result<()> {
             let message = format!("{}: directions belong to a point: add --at X,Y,Z", path.display());
             return Err(Failure::Usage(message));
         }
+        if photon_file::is_map(path) && arguments.at.is_some() {
+            let message =
+                format!("{}: a map holds all photons: leave out --at, or write .ply", path.display());
+            return Err(Failure::Usage(message));
+        }
         if !FORMATS.contains(&extension.as_str()) && !outputs::is_image_name(path) {
             let message = format!(
                 "{}: photons are written as pictures (.png, .exr, .ppm, .pfm, .hdr), .{}",

@@ -137,6 +137,8 @@ pub fn automatic_exposure(image: &Image, key: f32) -> f32 {
 
 /// Pixels darker than this share of the log-average count as so bright where logarithms are taken.
 const DARKEST: f32 = 1e-4;
+/// And brighter ones than so many averages as that.
+const BRIGHTEST: f64 = 1e30;
 
 /// Operators that need the whole picture.
 fn map_by_surroundings(operator: Operator, width: usize, pixels: &mut [[f32; 3]]) {
@@ -144,18 +146,15 @@ fn map_by_surroundings(operator: Operator, width: usize, pixels: &mut [[f32; 3]]
         pixels.fill([0.0; 3]);
         return;
     };
-    let floor = DARKEST * average as f32;
-    let ceiling = finite_luminances(pixels).fold(0.0, f64::max) as f32;
+    // In units of the average, so that neither very dark nor very bright pictures leave the range of numbers.
+    let ceiling = (finite_luminances(pixels).fold(0.0, f64::max) / average).min(BRIGHTEST) as f32;
     let luminances = pixels.iter().map(|&pixel| {
-        let l = luminance(pixel);
-        if l.is_nan() { floor } else { l.clamp(floor, ceiling.max(floor)) }
+        let l = (f64::from(luminance(pixel)) / average) as f32;
+        if l.is_nan() { DARKEST } else { l.clamp(DARKEST, ceiling.max(DARKEST)) }
     });
     let plane = Plane::new(width, pixels.len() / width, luminances.collect());
     let (shown, saturation) = match operator {
-        Operator::ReinhardLocal(operator) => {
-            let scale = operator.key / average as f32;
-            (operator.map(&plane.map(|l| l * scale)), 1.0)
-        }
+        Operator::ReinhardLocal(operator) => (operator.map(&plane.map(|l| l * operator.key)), 1.0),
         Operator::Bilateral(operator) => {
             (operator.map(&plane.map(f32::log10)).map(|shown| 10_f32.powf(shown)), 1.0)
         }
@@ -170,12 +169,13 @@ fn map_by_surroundings(operator: Operator, width: usize, pixels: &mut [[f32; 3]]
         _ => (plane.clone(), 1.0),
     };
     pixels.par_iter_mut().zip(&plane.values).zip(&shown.values).for_each(|((pixel, l), shown)| {
-        *pixel = recoloured(*pixel, *l, *shown, saturation);
+        let l = (f64::from(*l) * average).max(f64::from(luminance(*pixel)));
+        *pixel = recoloured(*pixel, l, *shown, saturation);
     });
 }
 
 /// A pixel of luminance `l` shown with another; the ratios of its channels to it are raised to the power `saturation`.
-fn recoloured(pixel: [f32; 3], l: f32, shown: f32, saturation: f32) -> [f32; 3] {
+fn recoloured(pixel: [f32; 3], l: f64, shown: f32, saturation: f32) -> [f32; 3] {
     if pixel.iter().any(|value| value.is_nan()) {
         return [0.0; 3];
     }
@@ -183,7 +183,7 @@ fn recoloured(pixel: [f32; 3], l: f32, shown: f32, saturation: f32) -> [f32; 3] 
         return [1.0; 3];
     }
     pixel.map(|value| {
-        let ratio = value.max(0.0) / l;
+        let ratio = (f64::from(value.max(0.0)) / l) as f32;
         shown * if saturation == 1.0 { ratio } else { ratio.powf(saturation) }
     })
 }

@@ -220,12 +220,13 @@ fn all_operators_are_tame() {
         (_, 3) => [1e-30; 3],
         _ => [0.3, 0.2, 0.7],
     });
+    let faint = Image::from_fn(6, 5, |x, _| [if x == 0 { 0.0 } else { 1e-40 }; 3]);
     let dark = Image::from_fn(5, 4, |_, _| [0.0; 3]);
     let one = Image::from_fn(1, 1, |_, _| [3.0, 2.0, 1.0]);
     let flat = Image::from_fn(70, 40, |_, _| [0.4; 3]);
     let line = Image::from_fn(200, 1, |x, _| [x as f32; 3]);
     for operator in OPERATORS.into_iter().chain(others()) {
-        for image in [&odd, &dark, &one, &flat, &line, &scene(), &Image::new(0, 0)] {
+        for image in [&odd, &faint, &dark, &one, &flat, &line, &scene(), &Image::new(0, 0)] {
             let shown = apply(image, operator, 0.0).rgb_pixels().unwrap_or_default();
             for pixel in &shown {
                 let is_tame = pixel.iter().all(|value| value.is_finite() && *value >= 0.0);

@@ -71,7 +71,8 @@ impl PhotonCloud {
             tree.nearest(photon.p, n_density + 1, f32::INFINITY, found);
             let radius_squared = found.iter().map(|near| near.distance_squared).fold(0.0, f32::max);
             // The photon itself is one of those found, and so says nothing of the density; nor does the farthest.
-            let n_within = found.iter().len().saturating_sub(2) as f32;
+            // Of a single other one nothing is left, so it counts.
+            let n_within = found.iter().len().saturating_sub(2).max(1) as f32;
             let density = n_within / (std::f32::consts::PI * radius_squared.max(1e-12));
             photon.power.map(|value| value * density * std::f32::consts::FRAC_1_PI)
         };
