@@ -88,7 +88,8 @@ impl PixelStatistics {
         let number = |bytes: &[u8]| bytes.try_into().map(f32::from_le_bytes).unwrap_or(f32::NAN);
         let pair = |bytes: &[u8; 8]| (number(&bytes[..4]), number(&bytes[4..]));
         let radii: Vec<(f32, f32)> = pairs.iter().map(pair).collect();
-        let is_sound = |(squared, n): &(f32, f32)| *squared >= 0.0 && *squared <= 1.0 && *n >= 0.0;
+        let is_sound =
+            |(squared, n): &(f32, f32)| *squared > 0.0 && *squared <= 1.0 && *n >= 0.0 && n.is_finite();
         if !rest.is_empty() || !radii.iter().all(is_sound) {
             return Err(StateError);
         }
