@@ -11,6 +11,7 @@ use etendue_math::{Bounds3, Point3, Vector3};
 
 use crate::geometry::Geometry;
 use crate::hit::GeometryId;
+use crate::instance::Instance;
 use crate::shape::entity::Entity;
 
 /// A ball.
@@ -123,21 +124,31 @@ impl Geometry {
                 entity => boxes.extend(parts(entity)),
             }
         }
-        for instance in &self.instances {
-            let of_group =
-                in_objects.iter().filter(|index| self.entity_groups[**index as usize] == instance.group);
-            boxes.extend(
-                of_group
-                    .flat_map(|index| parts(&self.entities[*index as usize]))
-                    .filter_map(|b| instance.world_bounds(b)),
-            );
-        }
+        boxes.extend(self.instance_boxes(&in_objects));
         let n_left = n_balls - spheres.len().min(n_balls);
         let boxes = joined(boxes, n_left);
         let n_pieces = (n_left / boxes.len().max(1)).clamp(1, N_PARTS * N_PARTS);
         let pieces = boxes.into_iter().flat_map(|bounds| cut(bounds, n_pieces));
         spheres.extend(pieces.filter_map(BoundingSphere::around));
         spheres
+    }
+
+    /// Boxes in the world around parts of all instances of these shapes of objects: the more instances there are, the fewer
+    /// for each, so that at most [`MAX_INSTANCE_BOXES`], or one for each instance, need memory.
+    fn instance_boxes(&self, shapes: &[u32]) -> Vec<Bounds3> {
+        let mut of_groups = vec![Vec::new(); self.groups.len()];
+        for index in shapes {
+            let group = self.entity_groups[*index as usize] as usize;
+            of_groups[group].extend(parts(&self.entities[*index as usize]));
+        }
+        let is_wanted = |instance: &&Instance| !of_groups[instance.group as usize].is_empty();
+        let n_each = MAX_INSTANCE_BOXES / self.instances.iter().filter(is_wanted).count().max(1);
+        let of_groups: Vec<Vec<Bounds3>> = of_groups.into_iter().map(|boxes| joined(boxes, n_each)).collect();
+        let placed = |instance: &Instance| -> Vec<Bounds3> {
+            let own = &of_groups[instance.group as usize];
+            own.iter().filter_map(|bounds| instance.world_bounds(*bounds)).collect()
+        };
+        self.instances.iter().flat_map(placed).collect()
     }
 
     /// The same in at most `n_clusters` groups of neighbours, each with a ball around all of its objects: ranges of objects in order
@@ -163,6 +174,9 @@ impl Geometry {
         clusters.into_iter().filter_map(joined).collect()
     }
 }
+
+/// Most boxes around parts of instances, unless there are more instances: 1.5 MB.
+const MAX_INSTANCE_BOXES: usize = 1 << 16;
 
 /// Cells along each side of a shape that its primitives are sorted into.
 const N_PARTS: usize = 4;

@@ -102,3 +102,25 @@ fn covering_balls_hold_what_is_wanted() {
     let volume: f32 = spheres.iter().map(|sphere| sphere.radius.powi(3)).sum();
     assert!(volume < 0.2 * 125.0, "{volume} in {} balls", spheres.len());
 }
+
+/// A hundred thousand instances of a mesh of eight thousand triangles do not need a box for each part of each, nor their
+/// product in time; all of them are covered.
+#[test]
+fn many_instances_are_covered_by_few_balls() {
+    let mut builder = GeometryBuilder::new();
+    let object = builder.begin_object();
+    builder.add_to_object(object, Shape::Triangles(ball(5)), &Transform::IDENTITY, false);
+    let place = |i: u32| Vector3::new((i % 317) as f32 * 3.0, 0.0, (i / 317) as f32 * 3.0);
+    for i in 0..100_000 {
+        builder.add_instance(object, &still(Transform::translate(place(i))));
+    }
+    let geometry = builder.build();
+    let wanted = [0];
+    assert_eq!(geometry.instance_boxes(&wanted).len(), 100_000);
+    let spheres = geometry.covering_spheres(64, &|_| true);
+    assert!(!spheres.is_empty() && spheres.len() <= 128);
+    for i in (0..100_000).step_by(997) {
+        let top = Point3::ORIGIN + place(i) + Vector3::new(0.0, 0.9, 0.0);
+        assert!(spheres.iter().any(|sphere| sphere.contains(top)), "{top:?}");
+    }
+}
