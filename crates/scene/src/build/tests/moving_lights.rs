@@ -213,3 +213,20 @@ fn lamps_of_moving_instances_shine() {
         assert!(rays.mean() < 1.05 * sum && rays.mean() > 0.4 * sum, "{} of {sum}", rays.mean());
     }
 }
+
+/// A lamp that grows from a hundredth is chosen by its mean power: of a side that grows evenly from a to b, the mean square is
+/// (a^2 + ab + b^2) / 3.
+#[test]
+fn a_growing_lamp_has_its_mean_power() {
+    let scaled = |s| Transform::scale(s, s, s).expect("not flat");
+    let power = |start, end| {
+        let motion =
+            AnimatedTransform { start: scaled(start), end: scaled(end), start_time: 0.0, end_time: 1.0 };
+        let shape = ShapeEntity { world_from_object: motion, ..emitter(patch()) };
+        let scene = scene(&Document { shapes: vec![shape], ..document(Entity::new("diffuse")) });
+        scene.lights.iter().map(|light| light.power(&scene.light_context()).weight).sum::<f64>()
+    };
+    let (still, growing) = (power(1.0, 0.999_999), power(0.01, 1.0));
+    // The error of eight middles of a parabola is at most b^2 / (12 * 64).
+    assert!((growing / still - 0.336_7).abs() < 2e-3, "{growing} of {still}");
+}

@@ -11,6 +11,9 @@ use etendue_spectrum::{Sampled, Wavelengths};
 use super::{AreaEmission, AreaEmissionId};
 use crate::light::{EmittedRay, LightBounds, LightContext, LightPower, LightSample, LightTables};
 
+/// Times at which the area of a lamp that moves is looked at.
+const N_TIMES: u32 = 8;
+
 /// Index of a motion in [`LightTables`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct LightMotionId(pub u32);
@@ -169,9 +172,16 @@ impl MovingAreaLight {
         self.emission(context).exitance() * f64::from(self.area(context))
     }
 
-    /// Area in the world at the start of the motion.
+    /// Area in the world, the mean over the motion: a lamp that grows is chosen by what it will be, too.
     fn area(&self, context: &LightContext) -> f32 {
-        placed_area(context.geometry, self.geometry, self.primitive, &self.motion(context).ends().start)
+        let motion = self.motion(context);
+        let ends = motion.ends();
+        let area_at = |i: u32| {
+            let share = (i as f32 + 0.5) / N_TIMES as f32;
+            let map = motion.at(ends.start_time + share * (ends.end_time - ends.start_time));
+            placed_area(context.geometry, self.geometry, self.primitive, &map)
+        };
+        (0..N_TIMES).map(area_at).sum::<f32>() / N_TIMES as f32
     }
 
     /// Wherever it comes by, and all directions: it may turn.
