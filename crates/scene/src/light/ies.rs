@@ -46,7 +46,7 @@ fn direction_at(place: Point2) -> Vector3 {
     Vector3::new(sine * x, sine * y, -cosine)
 }
 
-/// Solid angle of a row of cells over that of the sphere, times one half: the difference of the cosines at its ends.
+/// Twice the share of the sphere that a row of cells has: the difference of the cosines at its ends.
 fn row_height(row: usize) -> f32 {
     let step = PI / N_CELLS.0 as f32;
     2.0 * ((row as f32 + 0.5) * step).sin() * (0.5 * step).sin()
