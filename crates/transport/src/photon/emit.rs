@@ -49,7 +49,8 @@ pub struct EmissionSettings {
     pub target: Target,
     /// How they find the cells of projection maps.
     pub scheme: MapScheme,
-    /// Cells along the side of a map; a map of a light in all directions has two squares.
+    /// Cells along the side of a map, at most 1024; a map of a light in all directions has two squares. Those of many lights are
+    /// coarser.
     pub n_cells: u32,
     /// Microfacet width below which gloss is sharp.
     pub sharp_alpha: f32,
@@ -115,8 +116,10 @@ impl PhotonEmitter {
         by_power.sort_by(|a, b| powers[*b].total_cmp(&powers[*a]).then(a.cmp(b)));
         by_power.truncate(MAX_PREPARED);
         let targets = targets(scene, settings);
+        let n_cells = aim::affordable_side(settings.n_cells.clamp(2, 1024) as usize, by_power.len());
         let prepare = |index: &usize| {
-            (*index, Source::new(&scene.lights[*index], &context, targets.as_ref(), settings))
+            let light = &scene.lights[*index];
+            (*index, Source::new(light, &context, targets.as_ref(), n_cells, settings.scheme))
         };
         let prepared: Vec<(usize, (Option<Box<Source>>, f64))> = by_power.par_iter().map(prepare).collect();
         let mut sources = vec![None; powers.len()];
@@ -200,11 +203,11 @@ impl Source {
         light: &Light,
         context: &LightContext,
         targets: Option<&Targets>,
-        settings: &EmissionSettings,
+        n_cells: usize,
+        scheme: MapScheme,
     ) -> (Option<Box<Self>>, f64) {
-        let n_cells = settings.n_cells.clamp(2, 1024) as usize;
         let aimed = targets
-            .map_or(Aimed::Everywhere, |targets| Aim::new(light, context, targets, n_cells, settings.scheme));
+            .map_or(Aimed::Everywhere, |targets| Aim::new(light, context, targets, n_cells, scheme));
         let (aim, share) = match aimed {
             Aimed::Nowhere => return (None, 0.0),
             Aimed::Everywhere => (None, 1.0),

@@ -239,3 +239,36 @@ fn a_ball_of_glass_keeps_the_energy_of_its_caustic() {
     expect_mean("what leaves it downwards", &caustic, expected, 0.01);
     assert!(rate > 0.9, "of photons that are aimed {rate} meet the ball");
 }
+
+/// What coarse cells do not show is not lost: a cone wider than a hemisphere that ends abruptly on a target, and a luminaire whose beam
+/// is narrower than the steps between looks at it.
+#[test]
+fn coarse_maps_lose_no_light() {
+    let file = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("narrow beam.ies");
+    let table = "IESNA91\nTILT=NONE\n1 -1 1 4 1 1 2 0 0 0\n1 1 50\n0 1 2 180\n0\n1000 1000 0 0\n";
+    std::fs::write(&file, table).expect("the folder for tests can be written");
+    let lights = [
+        (
+            "wide spot with a hard edge",
+            format!(
+                "LightSource \"spot\" \"point3 from\" [0 2 0] \"point3 to\" [0.983 1.816 0] \"float coneangle\" 100
+                \"float conedeltaangle\" 0 {}",
+                lit("I", 3.0)
+            ),
+        ),
+        (
+            "narrow beam",
+            format!(
+                "Translate -0.6 3 0 Rotate -90 1 0 0 LightSource \"ies\" \"string filename\" {:?}",
+                file.to_str().expect("a folder with a plain name").replace('\\', "/")
+            ),
+        ),
+    ];
+    let coarse = |target| EmissionSettings { target, n_cells: 2, ..EmissionSettings::default() };
+    for (name, light) in lights {
+        let scene = still_life(name, &light);
+        let (free, _, _) = caustics(&scene, &coarse(Target::Anything), 40_000, PhotonPattern::Random);
+        let (aimed, _, _) = caustics(&scene, &coarse(Target::SharpShapes), 40_000, PhotonPattern::Random);
+        expect_agreement(name, &free, &aimed, 0.2);
+    }
+}

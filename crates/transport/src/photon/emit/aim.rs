@@ -8,7 +8,7 @@
 //! left out. Other lights at infinity choose a direction first and then a ball whose shadow they hit; where shadows overlap,
 //! the flux is divided by their number. Of curved lamps photons that are off their targets are not sent.
 //!
-//! The notebook has three schemes: (a) to go round the active cells, (b) to draw directions until one is active, (c) to draw an
+//! SPEC EMI-10 names three schemes: (a) to go round the active cells, (b) to draw directions until one is active, (c) to draw an
 //! active cell, then a direction in it. (b) and (c) are the same density, and here by choice. (a) is biased where the number of
 //! photons is no multiple of that of the cells, and not offered: the stratified pattern over (c) spreads photons as evenly.
 
@@ -40,9 +40,15 @@ impl MapScheme {
 const MAX_TRIES: u32 = 10_000;
 const LEAST_RETRY_SHARE: f64 = 0.01;
 
-/// Share of photons of pictured lights that leave by the light's own density, so that none carries more than ten times what
+/// Share of photons of lights that a map may know badly, such as those with pictures, that leave by the light's own density, so that none carries more than ten times what
 /// it would without a map, even where a feature of the picture is smaller than a cell.
 const DEFENCE: f32 = 0.1;
+
+/// What a cell without light that was found has of the mean of all, where there may be some.
+const FLOOR: f32 = 1e-3;
+
+/// Most cells of the maps of all lights together: some 100 MB.
+const MAX_CELLS: usize = 1 << 22;
 
 /// Places along the side of a cell where pictured lights are looked at.
 const N_LOOKS: usize = 4;
@@ -52,6 +58,12 @@ const USELESS_SHARE: f64 = 0.95;
 
 /// Most balls for lights at infinity, which look at each of them for each photon.
 const MAX_DISCS: usize = 64;
+
+/// Cells along the side of each map of so many lights, if they want `n`.
+pub(super) fn affordable_side(n: usize, n_lights: usize) -> usize {
+    let n_each = MAX_CELLS / (2 * n_lights.max(1));
+    n.min(n_each.isqrt()).max(2)
+}
 
 /// What photons are aimed at.
 #[derive(Debug)]
@@ -117,8 +129,9 @@ impl Aim {
         let Some(bounds) = light.bounds(context) else { return Aimed::Everywhere };
         let Some(place) = ball_around(bounds.bounds) else { return Aimed::Everywhere };
         let chart = Chart::of(light.directions(context));
-        let map =
-            DirectionMap::new(light, context, chart.unwrap_or(Chart::SPHERE), place, targets, n, scheme);
+        let chart_used = chart.unwrap_or(Chart::SPHERE);
+        let map = DirectionMap::new(light, context, chart_used, place, targets, n, scheme);
+        let Some(map) = map else { return Aimed::Everywhere };
         match map.share {
             share if share <= 0.0 => Aimed::Nowhere,
             share if share >= USELESS_SHARE => Aimed::Everywhere,
@@ -189,6 +202,10 @@ impl Cone {
         Self { axis, sin, cos }
     }
 
+    fn of_cosine(axis: Vector3, cos: f32) -> Self {
+        Self { axis, sin: (1.0 - cos * cos).max(0.0).sqrt(), cos }
+    }
+
     /// False if the cones surely have no direction in common.
     fn meets(&self, other: &Self) -> bool {
         // The angle between the axes against the sum of the half angles, unless that is more than half a turn.
@@ -204,10 +221,11 @@ fn cone_between(from: BoundingSphere, to: BoundingSphere) -> Cone {
         1e-5 * (from.centre.as_vector().abs().max_element() + to.centre.as_vector().abs().max_element());
     let widened = BoundingSphere { radius: to.radius + from.radius + rounding, ..to };
     let (axis, cos) = widened.cone_from(from.centre);
-    Cone { axis, cos, sin: (1.0 - cos * cos).max(0.0).sqrt() }
+    Cone::of_cosine(axis, cos)
 }
 
 impl DirectionMap {
+    /// `None` if no look at the light finds any.
     fn new(
         light: &Light,
         context: &LightContext,
@@ -216,28 +234,43 @@ impl DirectionMap {
         targets: &Targets,
         n: usize,
         scheme: MapScheme,
-    ) -> Self {
+    ) -> Option<Self> {
         let n = n.next_multiple_of(2).max(2);
         let width = n * chart.n_squares();
-        let cones: Vec<Cone> = targets.spheres.iter().map(|target| cone_between(place, *target)).collect();
+        let targets: Vec<Cone> = targets.spheres.iter().map(|target| cone_between(place, *target)).collect();
         let flux: Vec<f32> =
             (0..width * n).map(|i| cell_flux(light, context, &chart, [i % width, i / width], n)).collect();
-        let floor =
-            if needs_defence(light) { 1e-3 * flux.iter().sum::<f32>() / flux.len() as f32 } else { 0.0 };
+        let sum = |cells: &[f32]| cells.iter().map(|cell| f64::from(*cell)).sum::<f64>();
+        let found = sum(&flux);
+        if !(found > 0.0 && found.is_finite()) {
+            return None;
+        }
+        let floor = FLOOR * (found / flux.len() as f64) as f32;
+        let own = match light.directions(context) {
+            Directions::Cone { axis, cos_max } => Some(Cone::of_cosine(axis, cos_max)),
+            _ => None,
+        };
+        let is_pictured = is_pictured(light);
+        let mut is_uncertain = is_pictured;
         let active: Vec<f32> = (0..width * n)
             .map(|i| {
                 let (axis, angle) = chart.cell_cone([i % width, i / width], n);
                 let cell = Cone::new(axis, angle);
-                if cones.iter().any(|cone| cone.meets(&cell)) { flux[i].max(floor) } else { 0.0 }
+                if !targets.iter().any(|cone| cone.meets(&cell)) {
+                    return 0.0;
+                }
+                // Where the light's cone ends within a cell, all looks may be beyond it.
+                let is_missed = flux[i] <= 0.0 && own.is_none_or(|own| own.meets(&cell));
+                is_uncertain |= is_missed;
+                if is_missed || is_pictured { flux[i].max(floor) } else { flux[i] }
             })
             .collect();
-        let sum = |cells: &[f32]| cells.iter().map(|cell| f64::from(*cell)).sum::<f64>();
-        let share = if sum(&flux) > 0.0 { (sum(&active) / sum(&flux)).min(1.0) } else { 0.0 };
+        let share = (sum(&active) / found).min(1.0);
         let domain = Bounds2::new(Point2::splat(0.0), Point2::new(chart.n_squares() as f32, 1.0));
         let table = |cells: &[f32]| PiecewiseConstant2::new(cells, width, n, domain);
-        let defence = if needs_defence(light) { DEFENCE } else { 0.0 };
+        let defence = if is_uncertain { DEFENCE } else { 0.0 };
         let retries = scheme == MapScheme::Retry && share >= LEAST_RETRY_SHARE && defence == 0.0;
-        Self { chart, active: table(&active), all: retries.then(|| table(&flux)), share, defence }
+        Some(Self { chart, active: table(&active), all: retries.then(|| table(&flux)), share, defence })
     }
 
     /// True if the direction lies in an active cell.
@@ -293,7 +326,7 @@ impl DirectionMap {
 }
 
 /// True for lights whose intensity may vary within a cell.
-const fn needs_defence(light: &Light) -> bool {
+const fn is_pictured(light: &Light) -> bool {
     matches!(light, Light::Goniometric(_) | Light::Ies(_) | Light::Projection(_))
 }
 
@@ -306,7 +339,7 @@ fn cell_flux(
     n: usize,
 ) -> f32 {
     let is_even = matches!(light.directions(context), Directions::Sphere | Directions::Varied);
-    if is_even && !needs_defence(light) {
+    if is_even && !is_pictured(light) {
         return 1.0;
     }
     let at = |i: usize, cell: usize| (cell as f32 + (i as f32 + 0.5) / N_LOOKS as f32) / n as f32;
@@ -432,4 +465,22 @@ fn sample_discs(
     let ray = Ray::new(p - w * ((p - scene.center).dot(w) + back), w);
     // The chosen one covers the point but for rounding.
     Some((ray, n_covering.max(1) as f32 / shadow_area(spheres)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// However many lights there are and whatever they want, their maps have a bounded number of cells; few lights get what they want.
+    #[test]
+    fn maps_together_are_bounded() {
+        for n_lights in [1, 2, 7, super::super::MAX_PREPARED] {
+            for wanted in [2, 128, 1024] {
+                let n = affordable_side(wanted, n_lights);
+                assert!(n >= 2 && n <= wanted && 2 * n * n * n_lights <= MAX_CELLS, "{n} for {n_lights}");
+            }
+            assert_eq!(affordable_side(128, n_lights), 128);
+        }
+        assert_eq!(affordable_side(1024, 1), 1024);
+    }
 }
