@@ -15,7 +15,7 @@ use super::mapping::{
     Content, EyeMethod, EyePass, LIGHT_SAMPLER, LitMap, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS,
     MapNames, MapPlan, Probe, SHARP_ALPHA_SPEC, Seen, WAVELENGTHS, describe_map, length, spec,
 };
-use super::{PhotonEmitter, PhotonWalk};
+use super::{PhotonEmitter, PhotonSettings, PhotonWalk, Target};
 use crate::integrator::{Control, Integrator, PassEnd, Passes, ReportEntry};
 use crate::lpe::{PathExpressions, SHARP_ALPHA};
 use crate::path::camera_pass::{CameraPass, WavelengthMode};
@@ -49,6 +49,8 @@ pub struct DirectViewSettings {
     pub max_photon_depth: u32,
     /// Glossy lobes narrower than this are followed by rays (SPEC LPE-5).
     pub sharp_alpha: f32,
+    /// How photons leave and walk.
+    pub photons: PhotonSettings,
     /// How density is estimated.
     pub estimate: DensityEstimate,
     /// How wavelengths are chosen.
@@ -65,6 +67,7 @@ impl Default for DirectViewSettings {
             max_depth: 32,
             max_photon_depth: 64,
             sharp_alpha: SHARP_ALPHA,
+            photons: PhotonSettings::default(),
             estimate: DensityEstimate::default(),
             wavelengths: WavelengthMode::default(),
         }
@@ -89,15 +92,22 @@ const OWN_PARAMETERS: [ParameterSpec; 9] = [
     WAVELENGTHS,
 ];
 
-const N_PARAMETERS: usize = OWN_PARAMETERS.len() + DensityEstimate::PARAMETERS.len();
+const N_PARAMETERS: usize =
+    OWN_PARAMETERS.len() + PhotonSettings::PARAMETERS.len() + DensityEstimate::PARAMETERS.len();
 
-/// Both tables.
+/// All tables.
 const ALL_PARAMETERS: [ParameterSpec; N_PARAMETERS] = {
     let mut all = [MAX_PHOTON_DEPTH; N_PARAMETERS];
+    let (own, photons) = (OWN_PARAMETERS.len(), PhotonSettings::PARAMETERS.len());
     let mut i = 0;
     while i < N_PARAMETERS {
-        let own = OWN_PARAMETERS.len();
-        all[i] = if i < own { OWN_PARAMETERS[i] } else { DensityEstimate::PARAMETERS[i - own] };
+        all[i] = if i < own {
+            OWN_PARAMETERS[i]
+        } else if i < own + photons {
+            PhotonSettings::PARAMETERS[i - own]
+        } else {
+            DensityEstimate::PARAMETERS[i - own - photons]
+        };
         i += 1;
     }
     all
@@ -121,6 +131,7 @@ impl DirectViewSettings {
             max_depth: p.count("maxdepth", default.max_depth),
             max_photon_depth: p.count("maxphotondepth", default.max_photon_depth),
             sharp_alpha: p.float("sharpalpha", default.sharp_alpha),
+            photons: PhotonSettings::from_parameters(p),
             estimate: DensityEstimate::from_parameters(p),
             wavelengths: p.choice("wavelengths", "hero", WavelengthMode::CHOICES),
         }
@@ -217,8 +228,10 @@ fn fill(scene: &Scene, settings: &DirectViewSettings) -> LitMap {
         max_depth: settings.max_photon_depth,
         sharp_alpha: settings.sharp_alpha,
         wavelengths: settings.wavelengths,
+        pattern: settings.photons.pattern,
+        absorption: settings.photons.absorption,
         sampler: scene.sampler,
-        ..PhotonWalk::default()
+        stream: 0,
     };
     let plan = MapPlan {
         n_photons: u64::from(settings.n_photons),
@@ -232,5 +245,10 @@ fn fill(scene: &Scene, settings: &DirectViewSettings) -> LitMap {
         max_radius: settings.max_radius,
         estimate: settings.estimate,
     };
-    LitMap::fill(scene, &PhotonEmitter::new(scene), &plan).0
+    let target = match settings.show {
+        Show::All | Show::ShadowRays => Target::Anything,
+        Show::Caustics => Target::SharpShapes,
+    };
+    let aim = settings.photons.towards(target, settings.sharp_alpha);
+    LitMap::fill(scene, &PhotonEmitter::aimed(scene, &aim), &plan).0
 }

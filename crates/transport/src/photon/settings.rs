@@ -5,7 +5,7 @@ use etendue_scene::parameters::{ParameterSpec, Parameters};
 use super::{Absorption, EmissionSettings, MapScheme, PhotonPattern, Target};
 
 /// How photons leave and walk, as a scene asks.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotonSettings {
     /// In what pattern they leave.
     pub pattern: PhotonPattern,
@@ -17,7 +17,21 @@ pub struct PhotonSettings {
     pub n_cells: u32,
 }
 
+impl Default for PhotonSettings {
+    fn default() -> Self {
+        Self {
+            pattern: PhotonPattern::default(),
+            absorption: Absorption::default(),
+            scheme: MapScheme::default(),
+            n_cells: 128,
+        }
+    }
+}
+
 impl PhotonSettings {
+    /// Parameters in scene files.
+    pub const PARAMETERS: [ParameterSpec; 4] = [Self::PATTERN, Self::ABSORPTION, Self::CELLS, Self::SCHEME];
+
     /// `photonpattern`.
     pub const PATTERN: ParameterSpec = ParameterSpec {
         name: "photonpattern",
@@ -26,24 +40,21 @@ impl PhotonSettings {
         unit: "",
         doc: "pattern in which photons leave: qmc (scrambled Sobol), stratified, random, or grid (shows in caustics)",
     };
-    /// `absorption`.
-    pub const ABSORPTION: ParameterSpec = ParameterSpec {
+    const ABSORPTION: ParameterSpec = ParameterSpec {
         name: "absorption",
         kind: "string",
         default: "roulette",
         unit: "",
         doc: "photons become fewer (roulette), or for comparison weaker (scale) or many (branch)",
     };
-    /// `projectioncells`.
-    pub const CELLS: ParameterSpec = ParameterSpec {
+    const CELLS: ParameterSpec = ParameterSpec {
         name: "projectioncells",
         kind: "integer",
         default: "128",
         unit: "",
         doc: "cells along the side of a projection map, at most 1024; 0 for no maps",
     };
-    /// `projectionscheme`.
-    pub const SCHEME: ParameterSpec = ParameterSpec {
+    const SCHEME: ParameterSpec = ParameterSpec {
         name: "projectionscheme",
         kind: "string",
         default: "cell",
@@ -51,14 +62,19 @@ impl PhotonSettings {
         doc: "photons choose an active cell (cell), or directions until one is active (retry)",
     };
 
-    /// Reads the four parameters.
-    pub fn read(p: &mut Parameters<'_, '_>) -> Self {
+    /// Reads the four parameters of an integrator entity.
+    pub fn from_parameters(p: &mut Parameters<'_, '_>) -> Self {
         Self {
-            pattern: p.choice("photonpattern", "qmc", &PhotonPattern::NAMES),
+            pattern: Self::read_pattern(p),
             absorption: p.choice("absorption", "roulette", &Absorption::NAMES),
             n_cells: p.count_within("projectioncells", 128, 0, 1024),
             scheme: p.choice("projectionscheme", "cell", &MapScheme::NAMES),
         }
+    }
+
+    /// Reads `photonpattern`.
+    pub fn read_pattern(p: &mut Parameters<'_, '_>) -> PhotonPattern {
+        p.choice("photonpattern", "qmc", &PhotonPattern::NAMES)
     }
 
     /// What photons for a target are sent by.

@@ -12,7 +12,7 @@ use crate::lpe::Event;
 use crate::photon::estimate::radiance::{LitPlace, radiance};
 use crate::photon::estimate::{Density, DensityEstimate, EstimateScratch, Photons};
 use crate::photon::map::{PhotonMap, StoredPhoton};
-use crate::photon::{Onward, PhotonEmitter, PhotonVertex, PhotonWalk, Trail, trace_photons};
+use crate::photon::{Absorption, Onward, PhotonEmitter, PhotonVertex, PhotonWalk, Trail, trace_photons};
 
 /// The lobes of a surface that photons light: all but mirrors and what is nearly as sharp, which rays are for (SPEC LPE-5).
 #[inline]
@@ -125,7 +125,9 @@ impl LitMap {
         let mut shots: Vec<Shot> = Vec::new();
         let (mut n_emitted, mut rays) = (0, RayCounts::default());
         let most = plan.n_photons.saturating_mul(MOST_EMITTED).max(LEAST_EMITTED);
-        let mut next = if emitter.is_dark() { 0 } else { (plan.n_photons / 4).min(1 << 20) };
+        // Of photons that branch few are enough to tell how many are kept.
+        let first = if plan.walk.absorption == Absorption::Branch { 1 << 11 } else { 1 << 20 };
+        let mut next = if emitter.is_dark() { 0 } else { (plan.n_photons / 4).min(first) };
         while next > 0 || n_emitted == 0 && plan.n_photons > 0 && !emitter.is_dark() {
             let range = n_emitted..n_emitted + next.max(1);
             n_emitted = range.end;

@@ -36,7 +36,7 @@ use crate::integrator::{Control, Integrator, PassEnd, Passes, RayCounts, ReportE
 use crate::lpe::PathExpressions;
 use crate::path::camera_pass::{CameraPass, CameraPath, Follow, FollowedPath, Tracer};
 use crate::photon::estimate::EstimateScratch;
-use crate::photon::{EmissionSettings, PhotonEmitter, PhotonWalk, Target};
+use crate::photon::{PhotonEmitter, PhotonWalk, Target};
 
 /// Photons of the caustic map are other ones than those of the global map.
 const GLOBAL_STREAM: u32 = 0;
@@ -158,9 +158,10 @@ impl Maps {
             max_depth: settings.max_photon_depth,
             sharp_alpha: settings.sharp_alpha,
             wavelengths: settings.wavelengths,
+            pattern: settings.photons.pattern,
+            absorption: settings.photons.absorption,
             sampler: scene.sampler,
             stream: GLOBAL_STREAM,
-            ..PhotonWalk::default()
         };
         let plan = MapPlan {
             n_photons: u64::from(settings.global_photons),
@@ -179,9 +180,7 @@ impl Maps {
             max_radius: settings.caustic_radius,
             estimate: settings.estimate,
         };
-        let target = Target::SharpShapes;
-        let aim =
-            EmissionSettings { target, sharp_alpha: settings.sharp_alpha, ..EmissionSettings::default() };
+        let aim = settings.photons.towards(Target::SharpShapes, settings.sharp_alpha);
         let (caustic, caustic_places) = LitMap::fill(scene, &PhotonEmitter::aimed(scene, &aim), &plan);
         let precompute =
             |map, places: &[_], step| (settings.precompute > 0).then(|| Precomputed::new(map, places, step));

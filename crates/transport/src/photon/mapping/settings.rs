@@ -4,6 +4,7 @@ use etendue_scene::parameters::{ParameterSpec, Parameters};
 
 use crate::lpe::SHARP_ALPHA;
 use crate::path::camera_pass::WavelengthMode;
+use crate::photon::PhotonSettings;
 use crate::photon::estimate::{DensityEstimate, Filter};
 
 /// The most photons of a map.
@@ -42,6 +43,8 @@ pub struct MappingSettings {
     pub sharp_alpha: f32,
     /// Whether the terms have layers.
     pub layers: bool,
+    /// How photons leave and walk.
+    pub photons: PhotonSettings,
     /// How density is estimated.
     pub estimate: DensityEstimate,
     /// How wavelengths are chosen.
@@ -64,6 +67,7 @@ impl Default for MappingSettings {
             max_photon_depth: 64,
             sharp_alpha: SHARP_ALPHA,
             layers: true,
+            photons: PhotonSettings::default(),
             estimate: DensityEstimate::default(),
             wavelengths: WavelengthMode::default(),
         }
@@ -130,15 +134,22 @@ const OWN_PARAMETERS: [ParameterSpec; 15] = [
     WAVELENGTHS,
 ];
 
-const N_PARAMETERS: usize = OWN_PARAMETERS.len() + DensityEstimate::PARAMETERS.len();
+const N_PARAMETERS: usize =
+    OWN_PARAMETERS.len() + PhotonSettings::PARAMETERS.len() + DensityEstimate::PARAMETERS.len();
 
-/// Both tables.
+/// All tables.
 const ALL_PARAMETERS: [ParameterSpec; N_PARAMETERS] = {
     let mut all = [MAX_PHOTON_DEPTH; N_PARAMETERS];
+    let (own, photons) = (OWN_PARAMETERS.len(), PhotonSettings::PARAMETERS.len());
     let mut i = 0;
     while i < N_PARAMETERS {
-        let own = OWN_PARAMETERS.len();
-        all[i] = if i < own { OWN_PARAMETERS[i] } else { DensityEstimate::PARAMETERS[i - own] };
+        all[i] = if i < own {
+            OWN_PARAMETERS[i]
+        } else if i < own + photons {
+            PhotonSettings::PARAMETERS[i - own]
+        } else {
+            DensityEstimate::PARAMETERS[i - own - photons]
+        };
         i += 1;
     }
     all
@@ -171,6 +182,7 @@ impl MappingSettings {
             max_photon_depth: p.count("maxphotondepth", default.max_photon_depth),
             sharp_alpha: p.float("sharpalpha", default.sharp_alpha),
             layers: p.bool("layers", default.layers),
+            photons: PhotonSettings::from_parameters(p),
             estimate: DensityEstimate::from_parameters(p),
             wavelengths: p.choice("wavelengths", "hero", WavelengthMode::CHOICES),
         }

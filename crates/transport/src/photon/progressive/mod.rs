@@ -121,6 +121,7 @@ impl Progressive {
             max_depth: settings.max_depth.saturating_sub(1),
             sharp_alpha: settings.sharp_alpha,
             wavelengths: settings.wavelengths,
+            pattern: settings.pattern,
             sampler,
             stream: 0,
             ..PhotonWalk::default()

@@ -4,6 +4,7 @@ use etendue_scene::parameters::{ParameterSpec, Parameters};
 
 use crate::lpe::SHARP_ALPHA;
 use crate::path::camera_pass::WavelengthMode;
+use crate::photon::{PhotonPattern, PhotonSettings};
 
 /// Most photons of a pass: what they take in memory is bounded by it.
 const MAX_PHOTONS: u32 = 1 << 24;
@@ -51,6 +52,8 @@ pub struct ProgressiveSettings {
     pub receiver_alpha: f32,
     /// Glossy events narrower than this count as specular in path expressions without `G`.
     pub sharp_alpha: f32,
+    /// In what pattern photons leave.
+    pub pattern: PhotonPattern,
     /// How wavelengths are chosen.
     pub wavelengths: WavelengthMode,
     /// Groups of photons and camera paths in a pass, each with wavelengths of its own.
@@ -71,6 +74,7 @@ impl Default for ProgressiveSettings {
             direct: DirectLighting::default(),
             receiver_alpha: 0.15,
             sharp_alpha: SHARP_ALPHA,
+            pattern: PhotonPattern::default(),
             wavelengths: WavelengthMode::default(),
             n_groups: 4,
             seed: 0,
@@ -151,6 +155,7 @@ impl ProgressiveSettings {
             unit: "",
             doc: "groups of a pass, which share its photons; each has wavelengths of its own and a camera path for each pixel",
         },
+        PhotonSettings::PATTERN,
         ParameterSpec { name: "seed", kind: "integer", default: "0", unit: "", doc: "changes the photons" },
         ParameterSpec {
             name: "lightsampler",
@@ -182,6 +187,7 @@ impl ProgressiveSettings {
         let direct = p.choice("direct", "lights", &direct);
         let receiver_alpha = p.float("receiveralpha", default.receiver_alpha);
         let sharp_alpha = p.float("sharpalpha", default.sharp_alpha);
+        let pattern = PhotonSettings::read_pattern(p);
         let modes = [
             ("hero", WavelengthMode::Hero),
             ("single", WavelengthMode::Single),
@@ -202,6 +208,7 @@ impl ProgressiveSettings {
             direct,
             receiver_alpha,
             sharp_alpha,
+            pattern,
             wavelengths,
             n_groups,
             seed,
