@@ -127,7 +127,7 @@ impl Geometry {
         boxes.extend(self.instance_boxes(&in_objects));
         let n_left = n_balls - spheres.len().min(n_balls);
         let boxes = joined(boxes, n_left);
-        let n_pieces = (n_left / boxes.len().max(1)).clamp(1, N_PARTS * N_PARTS);
+        let n_pieces = (n_left / boxes.len().max(1)).clamp(1, MAX_PIECES);
         let pieces = boxes.into_iter().flat_map(|bounds| cut(bounds, n_pieces));
         spheres.extend(pieces.filter_map(BoundingSphere::around));
         spheres
@@ -178,30 +178,83 @@ impl Geometry {
 /// Most boxes around parts of instances, unless there are more instances: 1.5 MB.
 const MAX_INSTANCE_BOXES: usize = 1 << 16;
 
-/// Cells along each side of a shape that its primitives are sorted into.
-const N_PARTS: usize = 4;
+/// Most cells that the primitives of a shape are cut by, as a power of two.
+const LOG2_PARTS: u32 = 6;
 
-/// Boxes around parts of a shape: around the primitives whose middles lie in the same cell of a grid.
+/// Most pieces of a flat or long box.
+const MAX_PIECES: usize = 16;
+
+/// Boxes around parts of a shape: of what lies in each cell of a grid. No more than primitives.
 fn parts(entity: &Entity) -> Vec<Bounds3> {
     let whole = entity.whole_bounds();
-    if whole.is_empty() {
+    let Some(log2_parts) = entity.n_primitives().checked_ilog2().filter(|_| !whole.is_empty()) else {
         return Vec::new();
-    }
-    let extent = whole.diagonal();
-    let mut cells = vec![Bounds3::EMPTY; N_PARTS * N_PARTS * N_PARTS];
+    };
+    let grid = Grid::new(whole, log2_parts.min(LOG2_PARTS));
+    let mut cells = vec![Bounds3::EMPTY; grid.n.iter().product()];
     for bounds in (0..entity.n_primitives()).map(|primitive| entity.bounds(primitive)) {
-        if bounds.is_empty() || !bounds.min.is_finite() || !bounds.max.is_finite() {
-            continue;
+        if !bounds.is_empty() && bounds.min.is_finite() && bounds.max.is_finite() {
+            grid.add(bounds, &mut cells);
         }
-        let from_corner = bounds.centroid() - whole.min;
-        let cell = (0..3).fold(0, |cell, axis| {
-            let place = if extent[axis] > 0.0 { from_corner[axis] / extent[axis] } else { 0.0 };
-            cell * N_PARTS + ((place * N_PARTS as f32) as usize).min(N_PARTS - 1)
-        });
-        cells[cell] = cells[cell].union(bounds);
     }
     cells.retain(|cell| !cell.is_empty());
     cells
+}
+
+/// Cells that are about as wide as deep and high.
+struct Grid {
+    whole: Bounds3,
+    n: [usize; 3],
+}
+
+impl Grid {
+    /// With 2^`log2_cells` cells; with one if the box is infinite.
+    fn new(whole: Bounds3, log2_cells: u32) -> Self {
+        let mut n = [1; 3];
+        let extent = whole.diagonal();
+        for _ in 0..if extent.is_finite() { log2_cells } else { 0 } {
+            let side = |axis: usize| extent[axis] / n[axis] as f32;
+            let longest =
+                (1..3).fold(0, |longest, axis| if side(axis) > side(longest) { axis } else { longest });
+            n[longest] *= 2;
+        }
+        Self { whole, n }
+    }
+
+    fn cell_at(&self, axis: usize, p: f32) -> usize {
+        let place = (p - self.whole.min[axis]) / (self.whole.max[axis] - self.whole.min[axis]);
+        // Not a number where it is flat, which is the first cell.
+        ((place * self.n[axis] as f32) as usize).min(self.n[axis] - 1)
+    }
+
+    /// Unites a box with the cells, each with what it has of the box. Neighbours share an edge, and the outer ones go as far as
+    /// the box: nothing falls between them.
+    fn add(&self, bounds: Bounds3, cells: &mut [Bounds3]) {
+        let [x, y, z] = std::array::from_fn(|axis| {
+            (self.cell_at(axis, bounds.min[axis]), self.cell_at(axis, bounds.max[axis]))
+        });
+        let clip = |part: &mut Bounds3, axis: usize, i: usize, (first, last): (usize, usize)| {
+            let edge = |i: usize| {
+                let (min, max) = (self.whole.min[axis], self.whole.max[axis]);
+                (min + (max - min) * (i as f32 / self.n[axis] as f32))
+                    .clamp(bounds.min[axis], bounds.max[axis])
+            };
+            part.min[axis] = if i > first { edge(i) } else { bounds.min[axis] };
+            part.max[axis] = if i < last { edge(i + 1) } else { bounds.max[axis] };
+        };
+        let mut part = bounds;
+        for i in x.0..=x.1 {
+            clip(&mut part, 0, i, x);
+            for j in y.0..=y.1 {
+                clip(&mut part, 1, j, y);
+                for k in z.0..=z.1 {
+                    clip(&mut part, 2, k, z);
+                    let cell = &mut cells[(i * self.n[1] + j) * self.n[2] + k];
+                    *cell = cell.union(part);
+                }
+            }
+        }
+    }
 }
 
 /// At most about `n` boxes that hold these: neighbours along the longest side of what they fill are joined.
