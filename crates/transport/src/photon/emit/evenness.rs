@@ -7,9 +7,11 @@
 
 use etendue_math::{Bounds2, PiecewiseConstant2, Point2, Rng};
 
-/// Cells along the side of a table, and looks at each.
+/// Cells along the side of a table.
 const SIDE: usize = 32;
-const N_LOOKS: usize = 16;
+
+/// Looks at each cell, in each of which the other point lies in one of as many strata, 4 by 4.
+const LOOKS_SIDE: usize = 4;
 
 /// The part of the density that is the same everywhere.
 const FLOOR: f32 = 0.1;
@@ -74,12 +76,14 @@ fn table(flux: &dyn Fn(Point2, Point2) -> f32, stream: u64) -> Option<PiecewiseC
     let cells: Vec<f32> = (0..SIDE * SIDE)
         .map(|cell| {
             let within = |t: f32, i: usize| (i as f32 + t) / SIDE as f32;
-            let look = |rng: &mut Rng| {
-                let place = rng.next_point2();
+            let stratum = |t: f32, i: usize| (i as f32 + t) / LOOKS_SIDE as f32;
+            let mut look = |i: usize| {
+                let (place, other) = (rng.next_point2(), rng.next_point2());
                 let u = Point2::new(within(place.x, cell % SIDE), within(place.y, cell / SIDE));
-                flux(u, rng.next_point2())
+                flux(u, Point2::new(stratum(other.x, i % LOOKS_SIDE), stratum(other.y, i / LOOKS_SIDE)))
             };
-            (0..N_LOOKS).map(|_| look(&mut rng)).sum::<f32>() / N_LOOKS as f32
+            let n_looks = LOOKS_SIDE * LOOKS_SIDE;
+            (0..n_looks).map(&mut look).sum::<f32>() / n_looks as f32
         })
         .collect();
     let n = cells.len() as f64;
@@ -96,6 +100,9 @@ mod tests {
     use super::*;
 
     /// A flux that varies by both points becomes nearly even, and its mean stays; an even one is left alone.
+    ///
+    /// What is left has the variance 0.01 of the noise of the first table (4 of 16 looks lie in the stratum where the flux falls), 0.02
+    /// of the row of the second one's cells where it falls, 0.015 of the floor: 0.05 in all, of 1.5.
     #[test]
     fn flux_becomes_even() {
         let varied = |[p, d]: [Point2; 2]| (1.0 + 9.0 * p.x) * if d.y < 0.3 { 4.0 } else { 0.5 };
