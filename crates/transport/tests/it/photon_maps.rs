@@ -267,8 +267,8 @@ fn coarse_maps_lose_no_light() {
     let coarse = |target| EmissionSettings { target, n_cells: 2, ..EmissionSettings::default() };
     for (name, light) in lights {
         let scene = still_life(name, &light);
-        let (free, _, _) = caustics(&scene, &coarse(Target::Anything), 40_000, PhotonPattern::Random);
-        let (aimed, _, _) = caustics(&scene, &coarse(Target::SharpShapes), 40_000, PhotonPattern::Random);
+        let (free, _, _) = caustics(&scene, &coarse(Target::Anything), 100_000, PhotonPattern::Random);
+        let (aimed, _, _) = caustics(&scene, &coarse(Target::SharpShapes), 100_000, PhotonPattern::Random);
         expect_agreement(name, &free, &aimed, 0.2);
     }
 }
