@@ -33,7 +33,7 @@ pub struct CameraWiSample {
     pub we: f32,
     /// Density of `wi` per steradian; where lens or direction are discrete, the factor that takes their place.
     pub pdf_w: f32,
-    /// Where on the film, in pixels.
+    /// Where on the film, in pixels; of panoramas maybe only [one of the places](Camera::for_each_place) where it is seen.
     pub p_film: Point2,
     /// The point of the lens or image plane.
     pub p_lens: Point3,
@@ -160,7 +160,7 @@ impl Camera {
             Projection::Fisheye(camera) => camera.film_importance(&ray_camera),
             Projection::Realistic(_) => None,
         };
-        let result = result.filter(|result| self.is_lit(result.p_film))?;
+        let result = result.filter(|result| self.is_seen(result.p_film))?;
         Some(result.spread(&world_from_camera, ray_camera.direction))
     }
 
@@ -193,7 +193,7 @@ impl Camera {
             }
             Projection::Realistic(_) => return None,
         };
-        if !self.is_lit(film.p_film) {
+        if !self.is_seen(film.p_film) {
             return None;
         }
         let film = film.spread(&world_from_camera, (p_camera - lens.p_lens).try_normalized()?);
@@ -239,6 +239,14 @@ impl Camera {
             Projection::Realistic(_) => return None,
         };
         self.is_lit(p_film).then_some(p_film)
+    }
+
+    /// True if light that arrives at `p_film` enters the image in [some place](Self::for_each_place).
+    fn is_seen(&self, p_film: Point2) -> bool {
+        match &self.projection {
+            Projection::Spherical(camera) => camera.places(p_film).any(|p| self.is_lit(p)),
+            _ => self.is_lit(p_film),
+        }
     }
 
     fn is_lit(&self, p: Point2) -> bool {

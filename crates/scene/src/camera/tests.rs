@@ -389,6 +389,28 @@ fn crop_takes_no_light() {
     assert!(camera.sample_wi(Point3::new(-0.5, 0.0, -2.0), 0.0, MIDDLE).is_none(), "behind the camera");
 }
 
+/// A panorama goes on around its border: a filter at the left edge of a crop takes light that arrives at the right edge of the film.
+#[test]
+fn cropped_panoramas_take_light_across_the_border() {
+    let (resolution, radius) = ([40, 20], 2.0);
+    let lit = Bounds2::new(Point2::splat(-radius), Point2::new(10.0 + radius, 20.0 + radius));
+    let fixed = AnimatedTransform::constant(Transform::IDENTITY);
+    let projection = spherical(SphericalMapping::Equirectangular, resolution);
+    let camera = Camera::new(projection.clone(), fixed, Shutter::default(), resolution, lit);
+    let Projection::Spherical(whole) = projection else { panic!("a panorama") };
+    for (x, expected) in
+        [(39.0, Some(-1.0)), (38.5, Some(-1.5)), (37.0, None), (20.0, None), (5.0, Some(5.0))]
+    {
+        let p = Point3::ORIGIN + whole.direction(Point2::new(x, 10.0)) * 3.0;
+        let mut places = Vec::new();
+        if let Some(sample) = camera.sample_wi(p, 0.0, MIDDLE) {
+            camera.for_each_place(sample.p_film, |place| places.push(place.x));
+        }
+        assert_eq!(places.len(), usize::from(expected.is_some()), "{x}: {places:?}");
+        assert!(places.iter().zip(expected).all(|(place, x)| (place - x).abs() < 1e-3), "{x}: {places:?}");
+    }
+}
+
 /// Neighbouring pixels see points as far apart on a wall as their rays are; finer sampling sees finer detail.
 #[test]
 fn differentials_match_the_spacing_of_rays() {
