@@ -7,7 +7,8 @@
 //! from the camera show those if asked to (`"bool mirrors" true`); without, the image is that of `path` for the expression
 //! `L(S|D)*DE|LE`. What emits is seen by rays from the camera in any case (`LE`), since they show it without noise.
 //!
-//! A pass is one ray from the camera for each pixel, and as many paths from the lights. Unbiased but for `maxdepth`.
+//! A pass is one ray from the camera for each pixel, and as many paths from the lights. Unbiased but for `maxdepth`, the film's limit of what a
+//! pixel gets in a pass, and filters that are so wide that splats are drawn by them.
 //!
 //! SPEC: BDPT-7, LPE-3, LPE-4.
 
@@ -30,9 +31,13 @@ use crate::photon::{PhotonEmitter, PhotonWalk, Switches};
 
 pub use settings::LightSettings;
 
-/// Paths that one task follows, and tasks whose splats are in memory together; neither changes the result.
-const PATHS_PER_TASK: u64 = 1024;
+/// Most paths that one task follows, and tasks whose splats are in memory together; neither changes the result, which adds up path
+/// by path.
+const MAX_PATHS_PER_TASK: u64 = 1024;
 const TASKS_PER_BATCH: u64 = 64;
+
+/// Numbers that the paths of a task leave at most if the camera sees all of their events: half a megabyte.
+const NUMBERS_PER_TASK: u64 = 1 << 17;
 
 /// The stream of random numbers that choose points of the lens, apart from those of the paths.
 const LENS_STREAM: u32 = 1;
@@ -45,6 +50,8 @@ pub struct LightTracer {
     /// Memory of the last pass, for the next.
     tiles: Vec<TileSamples>,
     sums: SplatSums,
+    /// Of the scene that the first pass saw.
+    emitter: Option<PhotonEmitter>,
     tally: Tally,
     /// In the place of this method where light cannot be traced to the camera.
     stand_in: Option<Box<PathTracer>>,
@@ -77,6 +84,7 @@ impl LightTracer {
             expressions,
             tiles: Vec::new(),
             sums: SplatSums::default(),
+            emitter: None,
             tally: Tally::default(),
             stand_in: None,
         }
@@ -112,7 +120,8 @@ impl Integrator for LightTracer {
         self.sums.restart(film);
         let [width, height] = film.settings().resolution;
         let n_paths = settings.n_paths.map_or(film.settings().crop.n_pixels() as u64, u64::from);
-        let paths = LightPass { settings, expressions: &self.expressions, scene, film, control };
+        let emitter = &*self.emitter.get_or_insert_with(|| PhotonEmitter::new(scene));
+        let paths = LightPass { settings, expressions: &self.expressions, scene, emitter, film, control };
         let done = paths.run(pass * n_paths..(pass + 1) * n_paths, &mut self.sums);
         if done.n_paths < n_paths {
             end = PassEnd::Cancelled;
@@ -152,6 +161,7 @@ struct LightPass<'p> {
     settings: &'p LightSettings,
     expressions: &'p PathExpressions,
     scene: &'p Scene,
+    emitter: &'p PhotonEmitter,
     film: &'p Film,
     control: &'p Control<'p>,
 }
@@ -160,20 +170,20 @@ impl LightPass<'_> {
     /// Follows these paths, as far as it is not told to stop.
     fn run(&self, paths: Range<u64>, sums: &mut SplatSums) -> Tally {
         let n_paths = paths.end - paths.start;
-        let emitter = PhotonEmitter::new(self.scene);
-        if emitter.is_dark() || self.settings.max_depth == 0 {
+        if self.emitter.is_dark() || self.settings.max_depth == 0 {
             return Tally { n_paths, ..Tally::default() };
         }
-        let n_tasks = n_paths.div_ceil(PATHS_PER_TASK);
+        let paths_per_task = self.paths_per_task();
+        let n_tasks = n_paths.div_ceil(paths_per_task);
         let mut tally = Tally::default();
         for batch in (0..n_tasks).step_by(TASKS_PER_BATCH as usize) {
             let tasks = batch..n_tasks.min(batch + TASKS_PER_BATCH);
             let done: Vec<Option<(Splats<'_>, Tally)>> = tasks
                 .into_par_iter()
                 .map(|task| {
-                    let start = paths.start + task * PATHS_PER_TASK;
-                    let end = paths.end.min(start + PATHS_PER_TASK);
-                    (!self.control.is_cancelled()).then(|| self.trace(start..end, &emitter))
+                    let start = paths.start + task * paths_per_task;
+                    let end = paths.end.min(start + paths_per_task);
+                    (!self.control.is_cancelled()).then(|| self.trace(start..end))
                 })
                 .collect();
             let mut splats = Vec::with_capacity(done.len());
@@ -186,8 +196,15 @@ impl LightPass<'_> {
         tally
     }
 
+    /// So many that their splats fit into the memory of a task, however long they get; one at least.
+    fn paths_per_task(&self) -> u64 {
+        let numbers_per_path =
+            u64::from(self.settings.max_depth) * Splats::new(self.film).numbers_each() as u64;
+        (NUMBERS_PER_TASK / numbers_per_path.max(1)).clamp(1, MAX_PATHS_PER_TASK)
+    }
+
     /// What the paths of a task bring.
-    fn trace(&self, paths: Range<u64>, emitter: &PhotonEmitter) -> (Splats<'_>, Tally) {
+    fn trace(&self, paths: Range<u64>) -> (Splats<'_>, Tally) {
         let settings = self.settings;
         let walk = PhotonWalk {
             max_depth: settings.max_depth - 1,
@@ -216,7 +233,7 @@ impl LightPass<'_> {
                 switches: Switches::default(),
                 met_mirrors: &mut tally.met_mirrors,
             };
-            walk.trace(&tracer, emitter, index, &mut |vertex| connector.visit(vertex));
+            walk.trace(&tracer, self.emitter, index, &mut |vertex| connector.visit(vertex));
         }
         tally.n_connections = splats.len() as u64;
         self.control.tile_done(0, tracer.counts());

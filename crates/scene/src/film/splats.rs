@@ -18,8 +18,8 @@ use super::tile::{COLOR, WEIGHT};
 use super::{Film, FilmLayout, FilmSettings, N_COLOR, PixelBounds, SampleFaults, TileSamples};
 use crate::filter::Filter;
 
-/// Strips of rows that are added up in parallel. Each looks at all splats, so that there should not be many.
-const N_BANDS: usize = 16;
+/// Strips of rows that are added up in parallel.
+const N_BANDS: u32 = 16;
 
 /// Filters that reach more pixels are sampled.
 const MANY_PIXELS: f32 = 400.0;
@@ -68,6 +68,27 @@ impl<'f> Splats<'f> {
         }
     }
 
+    /// For each strip of `rows` rows the splats that reach it, in their order.
+    fn by_band(&self, bounds: PixelBounds, rows: u32, filter: &Filter, is_wide: bool) -> Vec<Vec<u32>> {
+        let mut by_band = vec![Vec::new(); bounds.height().div_ceil(rows) as usize];
+        let ([_, top], [_, bottom]) = (bounds.min, bounds.max);
+        for (index, p) in self.places.iter().enumerate() {
+            let (y, radius) = if is_wide { (drawn(*p, filter).0.y, 0.5) } else { (p.y, filter.radius().y) };
+            let reached = reached(y, radius, top, bottom);
+            if !reached.is_empty() {
+                let bands = (reached.start - top) / rows..=(reached.end - 1 - top) / rows;
+                bands.for_each(|band| by_band[band as usize].push(index as u32));
+            }
+        }
+        by_band
+    }
+
+    /// Numbers that each of them takes in memory.
+    #[must_use]
+    pub fn numbers_each(&self) -> usize {
+        2 + splat_len(self.layout)
+    }
+
     /// How many there are.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -105,20 +126,24 @@ impl SplatSums {
     /// Adds what tasks brought, in this order.
     pub fn add(&mut self, tasks: &[Splats<'_>], filter: &Filter) {
         let (bounds, stride) = (self.bounds, self.stride);
-        let rows = (bounds.height() as usize).div_ceil(N_BANDS).max(1);
-        let band_len = rows * bounds.width() as usize * stride;
+        let rows = bounds.height().div_ceil(N_BANDS).max(1);
+        let band_len = rows as usize * bounds.width() as usize * stride;
         if band_len == 0 {
             return;
         }
+        let is_wide = 4.0 * filter.radius().x * filter.radius().y > MANY_PIXELS;
+        let by_band: Vec<Vec<Vec<u32>>> =
+            tasks.par_iter().map(|task| task.by_band(bounds, rows, filter, is_wide)).collect();
         self.sums.par_chunks_mut(band_len).enumerate().for_each(|(band, sums)| {
-            let top = bounds.min[1] + (band * rows) as u32;
-            let bottom = bounds.max[1].min(top + rows as u32);
+            let top = bounds.min[1] + band as u32 * rows;
+            let bottom = bounds.max[1].min(top + rows);
             let bounds = PixelBounds { min: [bounds.min[0], top], max: [bounds.max[0], bottom] };
-            let is_wide = 4.0 * filter.radius().x * filter.radius().y > MANY_PIXELS;
-            let mut band = Band { bounds, stride, sums, filter, across: Vec::new() };
-            for task in tasks {
-                for (p, record) in task.places.iter().zip(task.values.chunks_exact(stride)) {
-                    if is_wide { band.add_by_chance(*p, record) } else { band.add(*p, record) }
+            let mut strip = Band { bounds, stride, sums, filter, across: Vec::new() };
+            for (task, by_band) in tasks.iter().zip(&by_band) {
+                for index in &by_band[band] {
+                    let (p, first) = (task.places[*index as usize], *index as usize * stride);
+                    let record = &task.values[first..first + stride];
+                    if is_wide { strip.add_by_chance(p, record) } else { strip.add(p, record) }
                 }
             }
         });
@@ -200,19 +225,24 @@ impl Band<'_> {
         }
     }
 
-    /// Adds all to one pixel, chosen by the filter. The choice depends on the place alone, so that all bands agree on it.
+    /// Adds all to one pixel, chosen by the filter.
     fn add_by_chance(&mut self, p: Point2, record: &[f32]) {
-        let bits = hash64(&[u64::from(p.x.to_bits()) << 32 | u64::from(p.y.to_bits())]);
-        let unit = |bits: u64| (bits & 0xff_ffff) as f32 / (1_u32 << 24) as f32;
-        let chosen = self.filter.sample(Point2::new(unit(bits), unit(bits >> 32)));
-        let Vector2 { x, y } = Vector2::new(p.x - chosen.offset.x, p.y - chosen.offset.y);
+        let (Vector2 { x, y }, weight) = drawn(p, self.filter);
         let PixelBounds { min, max } = self.bounds;
         let is_within = |p: f32, axis: usize| p >= min[axis] as f32 && p < max[axis] as f32;
         if is_within(x, 0) && is_within(y, 1) {
             let first = self.bounds.index([x as u32, y as u32]) * self.stride;
-            add_weighted(&mut self.sums[first..first + self.stride], record, f64::from(chosen.weight));
+            add_weighted(&mut self.sums[first..first + self.stride], record, f64::from(weight));
         }
     }
+}
+
+/// A place near `p` drawn by the filter, and its weight. The choice depends on `p` alone, so that all bands agree on it.
+fn drawn(p: Point2, filter: &Filter) -> (Vector2, f32) {
+    let bits = hash64(&[u64::from(p.x.to_bits()) << 32 | u64::from(p.y.to_bits())]);
+    let unit = |bits: u64| (bits & 0xff_ffff) as f32 / (1_u32 << 24) as f32;
+    let chosen = filter.sample(Point2::new(unit(bits), unit(bits >> 32)));
+    (Vector2::new(p.x - chosen.offset.x, p.y - chosen.offset.y), chosen.weight)
 }
 
 #[inline]

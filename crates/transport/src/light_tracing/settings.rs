@@ -6,6 +6,9 @@ use crate::lpe::SHARP_ALPHA;
 use crate::path::camera_pass::WavelengthMode;
 use crate::path_tracing::PathSettings;
 
+/// Most scattering events of a path, each of which leaves something in memory.
+const MAX_DEPTH: u32 = 1 << 16;
+
 /// Most paths of a pass.
 const MAX_PATHS: u32 = 1 << 30;
 
@@ -79,7 +82,7 @@ impl LightSettings {
     /// Reads the parameters of an integrator entity.
     pub fn from_parameters(p: &mut Parameters<'_, '_>) -> Self {
         let default = Self::default();
-        let max_depth = p.count("maxdepth", default.max_depth);
+        let max_depth = p.count_within("maxdepth", default.max_depth, 0, MAX_DEPTH);
         let n_paths = p.count_within("lightpaths", 0, 0, MAX_PATHS);
         let mirrors = p.bool("mirrors", default.mirrors);
         let sharp_alpha = p.float("sharpalpha", default.sharp_alpha);
