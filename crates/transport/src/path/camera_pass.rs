@@ -6,11 +6,13 @@ use etendue_geometry::Hit;
 use etendue_math::{Point2, Ray, Sampler, SamplerSettings, hash64};
 use etendue_scene::camera::CameraRay;
 use etendue_scene::film::{Features, FilmTile, PixelSample, TileSamples};
+use etendue_scene::medium::MediumId;
 use etendue_scene::{Film, Scene};
 use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;
 
 use super::adaptive::{AdaptivePixels, PassPixel};
+use super::medium::camera_medium;
 use crate::integrator::{Control, PassEnd, RayCounts};
 use crate::lpe::{LayerRecorder, PathExpressions};
 
@@ -50,6 +52,8 @@ impl WavelengthMode {
 pub struct Tracer<'s> {
     /// The scene.
     pub scene: &'s Scene,
+    /// What the camera stands in.
+    camera_medium: Option<MediumId>,
     closest: Cell<u64>,
     shadow: Cell<u64>,
     interpolated: Cell<u64>,
@@ -59,7 +63,13 @@ impl<'s> Tracer<'s> {
     /// Starts counting.
     #[must_use]
     pub const fn new(scene: &'s Scene) -> Self {
-        Self { scene, closest: Cell::new(0), shadow: Cell::new(0), interpolated: Cell::new(0) }
+        Self {
+            scene,
+            camera_medium: None,
+            closest: Cell::new(0),
+            shadow: Cell::new(0),
+            interpolated: Cell::new(0),
+        }
     }
 
     /// The nearest surface along the ray.
@@ -179,6 +189,7 @@ impl CameraPass<'_> {
         method: &F,
     ) -> PassEnd {
         let tiles = film.tiles(TILE_SIZE);
+        let camera_medium = camera_medium(scene);
         memory.resize_with(tiles.len(), TileSamples::default);
         let finished: Vec<Option<TileSamples>> = tiles
             .into_par_iter()
@@ -187,7 +198,7 @@ impl CameraPass<'_> {
                 if control.is_cancelled() {
                     return None;
                 }
-                let tracer = Tracer::new(scene);
+                let tracer = Tracer { camera_medium, ..Tracer::new(scene) };
                 let samples = self.run_tile(&tracer, pass, film.start_tile(bounds, memory), method);
                 control.tile_done(method.n_samples(bounds.n_pixels() as u64), tracer.counts());
                 Some(samples)
@@ -282,6 +293,7 @@ impl CameraPass<'_> {
         {
             let mut path = CameraPath {
                 ray,
+                medium: tracer.camera_medium,
                 numbers_of,
                 pass,
                 lambda: &mut lambda,
@@ -343,6 +355,8 @@ impl CameraSample {
 pub struct CameraPath<'p, 'e> {
     /// The ray from the camera.
     pub ray: Ray,
+    /// What it starts in.
+    pub medium: Option<MediumId>,
     /// The pixel whose random numbers it has: its own, but where pixels are interpolated.
     pub numbers_of: [u32; 2],
     /// Its number among the pixel's samples.

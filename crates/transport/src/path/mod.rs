@@ -4,5 +4,6 @@ pub mod adaptive;
 pub mod camera_pass;
 pub mod direct;
 pub mod features;
+pub mod medium;
 pub mod mis;
 pub mod roulette;

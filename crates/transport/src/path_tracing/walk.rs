@@ -60,7 +60,7 @@ impl<'s> Walk<'s> {
             depth: 0,
             last: None,
             has_scattered_widely: false,
-            medium: None,
+            medium: path.medium,
             artist: Artist::default(),
             radiance: Sampled::ZERO,
         }

@@ -19,6 +19,7 @@ use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;
 
 use crate::lpe::SHARP_ALPHA;
+use crate::path::medium::{medium_along, most_frequent};
 use aim::{Aim, Aimed, Targets};
 use evenness::Evenness;
 
@@ -296,9 +297,8 @@ fn mean_entry_area(light: &Light, context: &LightContext) -> f32 {
     sum / n.max(1.0)
 }
 
-/// Rays by which a light looks for what it stands in, and surfaces that one passes at most.
+/// Rays by which a light looks for what it stands in.
 const N_PROBES: u32 = 5;
-const MAX_PASSED: u32 = 64;
 
 /// What each light stands in: what most of a few of its rays find on their side of the first boundary, past whatever else is in their
 /// way. Nothing for lights at infinity, for which the first boundary on a photon's way tells. The lights of a shape share the answer.
@@ -321,32 +321,13 @@ fn start_media(scene: &Scene) -> Vec<Option<MediumId>> {
 fn start_medium(scene: &Scene, light: &Light) -> Option<MediumId> {
     let (context, lambda) = (scene.light_context(), Wavelengths::sample_uniform(0.5));
     let mut rng = Rng::new(0x3ed1, 1);
-    let mut votes: Vec<(Option<MediumId>, u32)> = Vec::new();
-    for _ in 0..N_PROBES {
+    most_frequent((0..N_PROBES).filter_map(|_| {
         let (position, direction) = (rng.next_point2(), rng.next_point2());
-        let Some(emitted) = light.sample_le(&context, position, direction, &lambda) else { continue };
+        let emitted = light.sample_le(&context, position, direction, &lambda)?;
         let mut ray = emitted.ray;
         if let Some(n) = emitted.n {
             ray.origin = offset_ray_origin(ray.origin, emitted.p_error, n, ray.direction);
         }
-        let medium = medium_along(scene, ray);
-        match votes.iter_mut().find(|(voted, _)| *voted == medium) {
-            Some((_, n)) => *n += 1,
-            None => votes.push((medium, 1)),
-        }
-    }
-    votes.into_iter().max_by_key(|(_, n)| *n).and_then(|(medium, _)| medium)
-}
-
-/// What a ray starts in, as the first boundary on its way tells.
-fn medium_along(scene: &Scene, mut ray: Ray) -> Option<MediumId> {
-    for _ in 0..MAX_PASSED {
-        let hit = scene.intersect(&ray, f32::INFINITY)?;
-        let surface = scene.surface(&ray, &hit);
-        if let Some(interface) = scene.materials.interface(surface.material) {
-            return interface.towards(surface.point.ng.dot_vector(surface.wo));
-        }
-        ray = surface.spawn_ray(ray.direction);
-    }
-    None
+        Some(medium_along(scene, ray).flatten())
+    }))
 }

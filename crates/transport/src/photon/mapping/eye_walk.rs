@@ -134,7 +134,7 @@ pub(crate) fn follow(
         roulette_scale: 1.0,
         walks_per_light_sample: 1.0,
         depth: 0,
-        medium: None,
+        medium: path.medium,
         last: None,
         n_wide: 0,
         n_sharp: 0,
