@@ -14,7 +14,7 @@
 
 mod settings;
 
-use etendue_geometry::Hit;
+use etendue_geometry::{GeometryId, Hit};
 use etendue_math::{Point2, Ray};
 use etendue_scene::bsdf::{Bsdf, Lobes, TransportMode};
 use etendue_scene::film::TileSamples;
@@ -88,13 +88,23 @@ struct Branch {
     depth: u32,
     /// What it travels through.
     medium: Option<MediumId>,
+    /// The shape that it left last.
+    from: Option<GeometryId>,
+}
+
+impl Branch {
+    /// True if an artist lets a light reach the shape that the branch left: it may see the light then.
+    fn admits(&self, scene: &Scene, light: LightId) -> bool {
+        let (Some(controls), Some(from)) = (&scene.controls, self.from) else { return true };
+        controls.reaches(light, from)
+    }
 }
 
 impl Follow for Tree<'_> {
     type Left = ();
 
     fn follow(&self, tracer: &Tracer<'_>, path: &mut CameraPath<'_, '_>) -> (Sampled, ()) {
-        let root = Branch { ray: path.ray, beta: Sampled::ONE, depth: 0, medium: None };
+        let root = Branch { ray: path.ray, beta: Sampled::ONE, depth: 0, medium: path.medium, from: None };
         (self.trace(tracer, root, path), ())
     }
 
@@ -113,10 +123,12 @@ impl Tree<'_> {
                 branch.beta *= scene.transmittance_of(medium, distance, path.lambda);
             }
             let Some(hit) = hit else {
-                return radiance + emit(branch.beta * surroundings(scene, &branch.ray, path), path);
+                return radiance + emit(branch.beta * surroundings(scene, &branch, path), path);
             };
             let surface = scene.surface(&branch.ray, &hit);
-            radiance += emit(branch.beta * scene.emitted(&surface, path.lambda), path);
+            if surface.light.is_some_and(|light| branch.admits(scene, light)) {
+                radiance += emit(branch.beta * scene.emitted(&surface, path.lambda), path);
+            }
             if branch.depth == 0 {
                 radiance += emit(branch.beta * scene.ambient(&surface, path.lambda), path);
             }
@@ -170,6 +182,7 @@ impl Tree<'_> {
                 beta,
                 depth: branch.depth + 1,
                 medium: tracer.scene.medium_towards(surface, sample.wi, branch.medium),
+                from: Some(surface.hit.geometry),
             };
             radiance += self.trace(tracer, next, path);
         }
@@ -252,9 +265,10 @@ fn emit(light: Sampled, path: &mut CameraPath<'_, '_>) -> Sampled {
 }
 
 /// Radiance from where there is no surface.
-fn surroundings(scene: &Scene, ray: &Ray, path: &CameraPath<'_, '_>) -> Sampled {
-    let context = scene.light_context();
-    scene.infinite_lights.iter().fold(Sampled::ZERO, |sum, id| {
+fn surroundings(scene: &Scene, branch: &Branch, path: &CameraPath<'_, '_>) -> Sampled {
+    let (context, ray) = (scene.light_context(), &branch.ray);
+    let seen = scene.infinite_lights.iter().filter(|id| branch.admits(scene, **id));
+    seen.fold(Sampled::ZERO, |sum, id| {
         sum + scene.light(*id).le_infinite(&context, ray.origin, ray.direction, path.lambda)
     })
 }
