@@ -1,5 +1,8 @@
 //! Switches of artists (SPEC EMI-14): each removes exactly the component that it names, and lights reach whom they may.
 
+use etendue_scene::Scene;
+use etendue_scene::document::{Entity, Value};
+
 use crate::support::{
     Setup, block_moments, expect_equal_pixels, expect_same_image, flat, layer, lit, luminance, render_layers,
     render_passes,
@@ -35,15 +38,24 @@ fn scene(all: &str, floor: &str, integrator: &str) -> etendue_scene::Scene {
         .scene("controls")
 }
 
-/// The picture with a switch is the picture without, less the layer of the component: the same paths by the same numbers.
+/// The same scene by light tracing.
+fn traced(mut scene: Scene, depth: i32) -> Scene {
+    scene.integrator = Entity::new("light").with("maxdepth", Value::Integers(vec![depth]));
+    scene
+}
+
+/// The picture with a switch is the picture without, less the layer of the component: the same paths by the same numbers. So it is of
+/// what light tracing finds.
 #[track_caller]
 fn removes(all: &str, floor: &str, component: &str) {
-    let whole = render_layers(&scene("", "", ""), 0..16, &[("gone", component)]);
-    let gone = layer(&whole, "gone");
-    assert!(gone.iter().any(|v| *v > 0.0), "{component} is there");
-    let expected: Vec<f64> = luminance(&whole).iter().zip(&gone).map(|(a, b)| a - b).collect();
-    let found = luminance(&render_passes(&scene(all, floor, ""), 0..16));
-    expect_equal_pixels(component, &found, &expected, 1e-3);
+    for by in [|scene| scene, |scene| traced(scene, 6)] as [fn(Scene) -> Scene; 2] {
+        let whole = render_layers(&by(scene("", "", "")), 0..16, &[("gone", component)]);
+        let gone = layer(&whole, "gone");
+        assert!(gone.iter().any(|v| *v > 0.0), "{component} is there");
+        let expected: Vec<f64> = luminance(&whole).iter().zip(&gone).map(|(a, b)| a - b).collect();
+        let found = luminance(&render_passes(&by(scene(all, floor, "")), 0..16));
+        expect_equal_pixels(component, &found, &expected, 1e-3);
+    }
 }
 
 #[test]
@@ -97,6 +109,9 @@ fn linked_lights_reach_whom_they_may() {
         let scene = linked(lights, "\"string lights\" [ \"fill\" ]", 5.0, &integrator);
         expect_same_image(lights, &block_moments(&scene, 96, 2), &dark, 0.05);
     }
+    let traced_dark = block_moments(&traced(linked("dark", "", 0.0, ""), 4), 96, 2);
+    let scene = traced(linked("light", "\"string lights\" [ \"fill\" ]", 5.0, ""), 4);
+    expect_same_image("light", &block_moments(&scene, 96, 2), &traced_dark, 0.1);
     let reached = linked("reached", "\"string lights\" [ \"key\" \"fill\" ]", 5.0, "");
     let all = linked("reached", "", 5.0, "");
     let pixels = |scene| luminance(&render_passes(scene, 0..8));

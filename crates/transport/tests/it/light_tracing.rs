@@ -18,14 +18,14 @@ const SIZE: u32 = 48;
 const FLOOR: &str =
     "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1] \"integer indices\" [0 1 2 3]";
 /// Floor, back wall and a ball, coloured.
-const THINGS: &str = "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.4]
+pub(crate) const THINGS: &str = "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0.7 0.6 0.4]
     Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1]
     Material \"diffuse\" \"rgb reflectance\" [0.3 0.5 0.8]
     Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  1 -1 1  -1 1 1  1 1 1]
     Material \"coateddiffuse\" \"float roughness\" 0.3 Translate 0.2 -0.6 0.1 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd";
 const LOOK: &str = "LookAt 0 0.2 -3.5  0 0 0  0 1 0";
 
-fn pinhole() -> String {
+pub(crate) fn pinhole() -> String {
     format!("{LOOK} Camera \"perspective\" \"float fov\" 40")
 }
 
@@ -74,7 +74,7 @@ fn expect_same(what: &str, a: &[Moments], b: &[Moments], resolution: f64) {
 
 /// Demands that light tracing gives what path tracing does but for what it cannot find.
 #[track_caller]
-fn check_with(name: &str, setup: &Setup<'_>, max_depth: i32, n_passes: u64, resolution: f64) {
+pub(crate) fn check_with(name: &str, setup: &Setup<'_>, max_depth: i32, n_passes: u64, resolution: f64) {
     let integrator = format!("\"integer maxdepth\" {max_depth}");
     let setup = Setup { integrator: &integrator, size: [SIZE, SIZE], ..*setup };
     let path = moments(&setup.scene(name), n_passes, &[("found", FOUND)], |film| layer(film, "found"));
@@ -298,8 +298,8 @@ fn layers_agree() {
     for (name, expression) in [("caustic", "LS+DE"), ("indirect", "L(S|D)*D[DG]E"), ("gloss", "L(S|D|G)*GE")]
     {
         let of = |film: &Film| layer(film, name);
-        let path = moments(&setup.scene("layers"), 96, &[(name, expression)], of);
-        expect_same(name, &moments(&light, 32, &[(name, expression)], of), &path, 0.25);
+        let path = moments(&setup.scene("layers"), 128, &[(name, expression)], of);
+        expect_same(name, &moments(&light, 48, &[(name, expression)], of), &path, 0.25);
     }
     let parts = [("emitted", "LE"), ("direct", "L[DG]E"), ("rest", "L[SDG]+[DG]E")];
     let film = render_layers(&light, 0..4, &parts);

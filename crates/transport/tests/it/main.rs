@@ -33,4 +33,5 @@ mod scenes;
 mod spectra;
 mod strategies;
 mod surfaces;
+mod traced_lights;
 mod whitted;

@@ -9,7 +9,7 @@ use etendue_math::Rng;
 use crate::support::{Setup, block_moments, expect_same_image, flat, seed};
 
 /// A picture of bright and dark texels in many colours, half of it nearly black, as a file.
-fn picture(name: &str, size: usize) -> PathBuf {
+pub(crate) fn picture(name: &str, size: usize) -> PathBuf {
     let mut rng = Rng::new(seed(name), 0);
     let pixels = (0..size * size).map(|i| {
         let brightness = if i % size < size / 2 { 0.01 } else { 8.0 * rng.next_f32().powi(6) };
