@@ -171,8 +171,8 @@ fn all_ways_agree() {
         ),
         (
             "bent normals",
-            format!("Material \"diffuse\" Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1] \"integer indices\" [0 1 2 1 3 2]
-            \"normal N\" [-0.5 1 0.3  0.5 1 0.3  -0.2 1 -0.6  0.6 1 0.6]"),
+            "Material \"diffuse\" Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1] \"integer indices\" [0 1 2 1 3 2]
+            \"normal N\" [-0.5 1 0.3  0.5 1 0.3  -0.2 1 -0.6  0.6 1 0.6]".to_owned(),
         ),
         (
             "texture",
