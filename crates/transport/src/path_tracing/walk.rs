@@ -396,9 +396,7 @@ impl<'s> Walk<'s> {
             walks_per_light_sample,
             path,
             |candidate, through, path| {
-                let admitted = tracer.scene.controls.as_ref().map_or(Lobes::ALL, |controls| {
-                    self.artist.lobes(controls, surface.hit.geometry, bsdf, self.settings.sharp_alpha)
-                });
+                let admitted = self.admitted(tracer.scene, surface, bsdf);
                 if admitted == Lobes::ALL && path.layers.is_idle() {
                     return through * candidate.unoccluded;
                 }
@@ -408,6 +406,15 @@ impl<'s> Walk<'s> {
         if let Some(scattered) = scattered {
             self.radiance += scattered;
         }
+    }
+
+    /// The lobes through which the path may see light that reaches the surface: all, but where artists have switched something
+    /// off.
+    #[inline]
+    pub(crate) fn admitted(&self, scene: &Scene, surface: &Surface, bsdf: &Bsdf) -> Lobes {
+        scene.controls.as_ref().map_or(Lobes::ALL, |controls| {
+            self.artist.lobes(controls, surface.hit.geometry, bsdf, self.settings.sharp_alpha)
+        })
     }
 
     /// What the admitted lobes make of light that reaches the surface; shows each of them to the layers.

@@ -10,7 +10,7 @@ use crate::support::{
 
 /// A floor and a wall, a glass ball, a mirror ball, a ball of sharp gloss and one of wide gloss under a lamp. `all` applies to
 /// every shape, `floor` to floor and wall alone.
-fn scene(all: &str, floor: &str, integrator: &str) -> etendue_scene::Scene {
+pub(crate) fn scene(all: &str, floor: &str, integrator: &str) -> etendue_scene::Scene {
     let attribute =
         |what: &str| if what.is_empty() { String::new() } else { format!("Attribute \"shape\" {what}\n") };
     let world = format!(
@@ -81,7 +81,7 @@ fn switches_of_other_shapes_change_nothing() {
 }
 
 /// A room of two lamps, of which one belongs to the group `key`. `linked` says what the ball receives.
-fn linked(name: &str, linked: &str, key: f64, integrator: &str) -> etendue_scene::Scene {
+pub(crate) fn linked(name: &str, linked: &str, key: f64, integrator: &str) -> etendue_scene::Scene {
     let world = format!(
         "AttributeBegin Material \"diffuse\" {} Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1] {linked}
         Translate 0 -0.5 0 Shape \"sphere\" \"float radius\" 0.5 {linked} AttributeEnd

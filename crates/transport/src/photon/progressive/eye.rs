@@ -103,7 +103,8 @@ impl Follow for Eye<'_> {
                 if self.settings.direct == DirectLighting::Lights {
                     probe(&mut walk, tracer, &surface, &bsdf, received, path);
                 }
-                self.receive(&mut walk, &mut state, &surface, &bsdf, received, path);
+                let admitted = received & walk.admitted(tracer.scene, &surface, &bsdf);
+                self.receive(&mut walk, &mut state, &surface, &bsdf, admitted, path);
             }
             swap_numbers(path, &mut light_numbers);
             let followed = bsdf.lobes() & !received;
@@ -228,6 +229,7 @@ impl Eye<'_> {
         let (mut all, mut one) = (Sampled::ZERO, 0.0);
         if let BsdfKind::Diffuse(diffuse) = bsdf.kind()
             && path.layers.is_idle()
+            && !lobes.is_empty()
         {
             let ns = bsdf.ns();
             let side = surface.wo.dot_normal(ns);
@@ -245,6 +247,7 @@ impl Eye<'_> {
                 if !counts(photon) {
                     return;
                 }
+                let lobes = lobes & photon.lobes;
                 let f = bsdf.eval(surface.wo, photon.wi, TransportMode::Radiance, lobes);
                 if f.is_black() {
                     return;

@@ -50,6 +50,9 @@ pub use settings::{DirectLighting, ProgressiveSettings, RadiusUpdate};
 /// Fewest and most photons of a pass that are chosen by the number of pixels.
 const PHOTONS_BY_PIXELS: std::ops::RangeInclusive<usize> = (1 << 14)..=(1 << 20);
 
+/// Share of the visible points without photons from which on users are told.
+const MANY_EMPTY: f64 = 0.5;
+
 /// Progressive photon mapping.
 #[derive(Debug)]
 pub struct Progressive {
@@ -242,11 +245,19 @@ impl Integrator for Progressive {
         let mean = |sum: u64| sum as f64 / n_points;
         let empty = mean(tally.n_empty.load(Ordering::Relaxed));
         let photons_per_point = mean(tally.n_photons.load(Ordering::Relaxed));
+        let mut without = ReportEntry::new("visible_points_without_photons", empty, "");
+        if empty > MANY_EMPTY {
+            without = without.with_advice(format!(
+                "{:.0} % of the visible points found no photon: a larger \"photonsperiteration\" or more passes show the light \
+                 there with less noise",
+                empty * 100.0
+            ));
+        }
         vec![
             ReportEntry::new("photons_emitted", self.n_emitted as f64, ""),
             ReportEntry::new("photons_stored", self.n_stored as f64, ""),
             ReportEntry::new("photons_per_visible_point", photons_per_point, ""),
-            ReportEntry::new("visible_points_without_photons", empty, ""),
+            without,
             ReportEntry::new("mean_radius", mean(tally.radius_sum.load(Ordering::Relaxed)) * 1e-6, "m"),
             ReportEntry::new(
                 "largest_radius",

@@ -28,6 +28,8 @@ pub(super) struct GroupPhoton {
     pub(super) depth: u16,
     /// Dispersion has left the first wavelength alone; the others are 0.
     pub(super) is_single: bool,
+    /// The lobes through which it may be seen: all, but where artists have switched something off.
+    pub(super) lobes: Lobes,
 }
 
 /// How the photons of a group are made.
@@ -145,7 +147,8 @@ impl PhotonPlan<'_> {
     }
 
     fn keep(&self, vertex: &PhotonVertex<'_>, part: &mut Part) {
-        if vertex.depth < self.least_depth || receiving_lobes(vertex.bsdf, self.receiver_alpha).is_empty() {
+        let received = receiving_lobes(vertex.bsdf, self.receiver_alpha) & vertex.lobes;
+        if vertex.depth < self.least_depth || received.is_empty() {
             return;
         }
         let (surface, wi) = (vertex.surface, vertex.surface.wo);
@@ -168,6 +171,7 @@ impl PhotonPlan<'_> {
             wi,
             depth: vertex.depth as u16,
             is_single,
+            lobes: vertex.lobes,
         });
         if self.wants_trails {
             part.trails.push(vertex.trail);
