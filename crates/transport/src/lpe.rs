@@ -11,7 +11,7 @@
 
 use std::fmt;
 
-use etendue_scene::bsdf::BsdfSample;
+use etendue_scene::bsdf::{Bsdf, BsdfSample};
 use etendue_spectrum::Sampled;
 use regex_automata::dfa::{Automaton, StartKind, dense};
 use regex_automata::nfa::thompson;
@@ -59,6 +59,17 @@ impl Event {
             Self::glossy(sample.roughness, sharp_alpha)
         } else {
             Self::Diffuse
+        }
+    }
+
+    /// The same, but that all glossy lobes of the surface are sharp, or none: what photon maps hold and what rays follow is
+    /// divided by surfaces, before a direction is known.
+    #[inline]
+    #[must_use]
+    pub(crate) fn at(bsdf: &Bsdf, sample: &BsdfSample, sharp_alpha: f32) -> Self {
+        match Self::of(sample, sharp_alpha) {
+            Self::SharpGlossy | Self::WideGlossy => Self::glossy(bsdf.glossy_roughness(), sharp_alpha),
+            event => event,
         }
     }
 

@@ -9,8 +9,16 @@ const MAX_LETTERS: u32 = 20;
 const LENGTH_SHIFT: u32 = MAX_LETTERS * LETTER_BITS;
 const LETTER_MASK: u64 = (1 << LETTER_BITS) - 1;
 
+/// Stands in the last place for any further events: all of them sharp, or not. The bits of the former are in the latter.
+const MORE_SHARP: u64 = 6;
+const MORE: u64 = 7;
+
+const fn is_sharp(event: Event) -> bool {
+    matches!(event, Event::Specular | Event::SharpGlossy)
+}
+
 /// The events of a photon since it left the light, the first of them in the lowest bits. Beyond 15 events it only notes that
-/// there were more.
+/// there were more, and whether these were sharp.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Trail(u64);
 
@@ -27,8 +35,9 @@ impl Trail {
     pub const fn with(self, event: Event) -> Self {
         let n = self.0 >> LENGTH_SHIFT;
         if n as usize >= Self::MAX_LEN {
-            // The length stays; the letters no longer tell the whole.
-            return Self(self.0 | LETTER_MASK << (Self::MAX_LEN as u32 * LETTER_BITS));
+            // The length stays; the letters no longer tell the whole, but whether all the others were sharp.
+            let more = if is_sharp(event) { MORE_SHARP } else { MORE };
+            return Self(self.0 | more << (Self::MAX_LEN as u32 * LETTER_BITS));
         }
         let letter = match event {
             Event::Diffuse => 1,
@@ -59,7 +68,12 @@ impl Trail {
     #[inline]
     #[must_use]
     pub const fn is_whole(self) -> bool {
-        self.0 >> (Self::MAX_LEN as u32 * LETTER_BITS) & LETTER_MASK == 0
+        self.more() == 0
+    }
+
+    /// What is known of events beyond those that the word holds.
+    const fn more(self) -> u64 {
+        self.0 >> (Self::MAX_LEN as u32 * LETTER_BITS) & LETTER_MASK
     }
 
     /// The events from the light on.
@@ -82,9 +96,7 @@ impl Trail {
     /// `LS+`: light that came through sharp reflection or refraction alone makes caustics.
     #[must_use]
     pub fn is_caustic(self) -> bool {
-        !self.is_empty()
-            && self.is_whole()
-            && self.events().all(|event| matches!(event, Event::Specular | Event::SharpGlossy))
+        !self.is_empty() && self.more() != MORE && self.events().all(is_sharp)
     }
 
     /// The word as bits, to be stored.
@@ -102,7 +114,7 @@ impl Trail {
         let is_valid = n <= Self::MAX_LEN
             && (0..n).all(|i| (1..=5).contains(&letter(i)))
             && (n..MAX_LETTERS as usize)
-                .all(|i| letter(i) == 0 || n == Self::MAX_LEN && i == n && letter(i) == LETTER_MASK);
+                .all(|i| letter(i) == 0 || n == Self::MAX_LEN && i == n && letter(i) >= MORE_SHARP);
         is_valid.then_some(trail)
     }
 }
@@ -139,6 +151,10 @@ mod tests {
         assert!(word(&[Event::Specular, Event::SharpGlossy]).is_caustic());
         assert!(!word(&[Event::Specular, Event::Diffuse, Event::Specular]).is_caustic());
         assert!(!word(&[Event::WideGlossy]).is_caustic());
+        let long = word(&[Event::Specular; 40]);
+        assert!(long.is_caustic() && !long.is_whole());
+        assert_eq!(Trail::from_bits(long.bits()), Some(long));
+        assert!(!long.with(Event::Diffuse).with(Event::Specular).is_caustic());
     }
 
     #[test]

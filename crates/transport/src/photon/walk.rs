@@ -262,7 +262,7 @@ impl PhotonWalk {
             }
             left /= survival;
         }
-        let event = Event::of(&sample, self.sharp_alpha);
+        let event = Event::at(bsdf, &sample, self.sharp_alpha);
         if let Some(controls) = &scene.controls
             && !flight.switches.scatter(controls, surface.hit.geometry, event)
         {

@@ -56,6 +56,7 @@ pub enum Farthest {
     #[default]
     LeaveOut,
     /// It counts, and the sum of `k` is multiplied by `(k - 1) / k`, or what corresponds to that with a filter. Unbiased too.
+    /// The same as `LeaveOut` in cylinders and cubes, whose rim it does not lie on.
     Scale,
     /// It counts, as in the book: too bright by `k / (k - 1)` in the mean.
     Count,
@@ -115,9 +116,18 @@ impl DensityEstimate {
     #[inline]
     #[must_use]
     pub const fn search_size(&self, k: usize) -> usize {
-        match self.farthest {
+        match self.rule() {
             Farthest::LeaveOut => k.saturating_add(1),
             Farthest::Scale | Farthest::Count => k,
+        }
+    }
+
+    /// What is done about the farthest photon. It lies on the rim of spheres and discs; in cylinders and cubes it counts for
+    /// itself only in a few directions, so that they scale nothing.
+    const fn rule(&self) -> Farthest {
+        match (self.farthest, self.volume) {
+            (Farthest::Scale, Volume::Cylinder { .. } | Volume::Cube) => Farthest::LeaveOut,
+            (farthest, _) => farthest,
         }
     }
 
@@ -135,7 +145,7 @@ impl DensityEstimate {
         accept: impl Fn(u32) -> Option<T>,
         mut add: impl FnMut(f32, T),
     ) -> Density {
-        let mut rim = Rim::of(&scratch.found, wanted, p, self.farthest);
+        let mut rim = Rim::of(&scratch.found, wanted, p, self.rule());
         if scratch.found.iter().len() == 0 {
             return Density { radius: rim.radius_squared.sqrt(), is_limited: true, ..Density::default() };
         }

@@ -103,7 +103,10 @@ fn uniform_fields_are_exact() {
         for volume in VOLUMES {
             for uses_hull in [false, true] {
                 let estimate = DensityEstimate { filter, volume, uses_hull, ..DensityEstimate::default() };
-                for (k, max_radius) in [(25, 10.0), (400, 0.3)] {
+                let scaled = DensityEstimate { farthest: Farthest::Scale, ..estimate };
+                for (estimate, k, max_radius) in
+                    [(estimate, 25, 10.0), (estimate, 400, 0.3), (scaled, 5, 10.0)]
+                {
                     let name = format!("{estimate:?} {k}");
                     let moments = moments(&name, 600, &estimate, (MIDDLE, k, max_radius), square);
                     mean_test(&moments, 100.0, SIGNIFICANCE).unwrap_or_else(|e| panic!("{name}: {e}"));

@@ -263,7 +263,7 @@ impl EyeWalk<'_> {
         let Some(sample) = bsdf.sample(surface.wo, u_component, u, TransportMode::Radiance, lobes) else {
             return false;
         };
-        self.leave(scene, surface, &sample, path);
+        self.leave(scene, (surface, bsdf), &sample, path);
         let brightness = self.beta.max_value() * self.roulette_scale;
         let probability = survival_probability(brightness, ROULETTE_THRESHOLD);
         if self.depth < 2 || probability == 1.0 {
@@ -276,11 +276,11 @@ impl EyeWalk<'_> {
     fn leave(
         &mut self,
         scene: &Scene,
-        surface: &Surface,
+        (surface, bsdf): (&Surface, &Bsdf),
         sample: &BsdfSample,
         path: &mut CameraPath<'_, '_>,
     ) {
-        let event = Event::of(sample, self.method.sharp_alpha);
+        let event = Event::at(bsdf, sample, self.method.sharp_alpha);
         let is_wide = matches!(event, Event::Diffuse | Event::WideGlossy);
         if self.n_wide == 0 && self.n_sharp == 0 {
             self.term = if is_wide { Term::Indirect } else { Term::Specular };
@@ -377,12 +377,17 @@ impl EyeWalk<'_> {
             return;
         }
         let pdf_w = bsdf.pdf(surface.wo, light.wi, TransportMode::Radiance, scattering);
-        let le = candidate.light.weighted(pdf_w * self.walks_per_light_sample);
-        let mut through = self.beta * le * (visible * bsdf.abs_cos(light.wi));
+        let mut through = self.beta * (visible * bsdf.abs_cos(light.wi));
         if let Some(medium) = scene.medium_towards(surface, light.wi, self.medium) {
             through *= scene.transmittance_of(medium, light.distance, path.lambda);
         }
-        let by = |lobes| through * bsdf.eval(surface.wo, light.wi, TransportMode::Radiance, lobes & lit);
+        let n_walks = self.walks_per_light_sample;
+        let by = |lobes: Lobes| {
+            let f = bsdf.eval(surface.wo, light.wi, TransportMode::Radiance, lobes & lit);
+            // The light of lobes that no ray follows is found in no other way.
+            let pdf_w = if bsdf.lobes().intersects(lobes & scattering) { pdf_w } else { 0.0 };
+            through * candidate.light.weighted(pdf_w * n_walks) * f
+        };
         if lit.intersects(Lobes::GLOSSY) && bsdf.lobes().is_glossy() {
             let event = Event::glossy(bsdf.glossy_roughness(), self.method.sharp_alpha);
             self.add_through(event, by(Lobes::GLOSSY), Term::Direct, path);
@@ -478,6 +483,10 @@ impl EyeWalk<'_> {
     }
 }
 
+/// Cosine of a hundredth of a radian between geometric and shading normal, beyond which irradiance, which knows the geometric
+/// one alone, does not tell enough: by then light at 45 degrees from the normal is wrong by a hundredth.
+const LEAST_FLAT_COSINE: f32 = 0.999_95;
+
 /// The light of a map on some lobes of a surface, by precomputed irradiance where that is enough.
 fn ask(
     map: &LitMap,
@@ -487,7 +496,8 @@ fn ask(
     path: &CameraPath<'_, '_>,
     scratch: &mut EstimateScratch,
 ) -> Sampled {
-    if let (Some(irradiance), BsdfKind::Diffuse(diffuse)) = (irradiance, bsdf.kind()) {
+    let is_flat = bsdf.ns().as_vector().dot(surface.point.ng.as_vector()).abs() > LEAST_FLAT_COSINE;
+    if let (Some(irradiance), BsdfKind::Diffuse(diffuse), true) = (irradiance, bsdf.kind(), is_flat) {
         let (p, ng) = (surface.point.p, surface.point.ng.as_vector());
         let n = if ng.dot(surface.wo) < 0.0 { -ng } else { ng };
         if let Some(e) = irradiance.irradiance(p, n, map.max_radius, &mut scratch.found) {

@@ -31,6 +31,8 @@ pub(crate) struct Precomputed {
     points: PackedPoints,
     /// In the order of the points.
     places: Vec<Place>,
+    /// True if every photon of the map is a place.
+    is_whole: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +59,7 @@ impl Precomputed {
                 chunk.iter().map(ask).collect::<Vec<Place>>()
             })
             .collect();
-        Self { points, places }
+        Self { points, places, is_whole: step == 1 }
     }
 
     /// The irradiance at a place on the side of the unit normal; `None` if the map has to be asked.
@@ -72,8 +74,8 @@ impl Precomputed {
     ) -> Option<Xyz> {
         self.points.nearest(p, N_CANDIDATES, max_radius, found);
         if found.iter().len() == 0 {
-            // Nothing within the radius: neither has the map.
-            return Some(Xyz::default());
+            // Nothing within the radius: neither has the map, unless it holds photons that are no places.
+            return self.is_whole.then(Xyz::default);
         }
         let similar = found.iter().filter_map(|near| {
             let place = &self.places[near.index as usize];
