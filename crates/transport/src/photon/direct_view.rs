@@ -163,12 +163,13 @@ impl Integrator for DirectView {
 
     fn run_pass(&mut self, scene: &Scene, pass: u64, film: &mut Film, control: &Control<'_>) -> PassEnd {
         let settings = &self.settings;
-        let (map, _) = self.map.get_or_insert_with(|| {
-            let map = fill(scene, settings);
-            control.tile_done(0, map.rays);
-            let probe = Probe::new(scene, &map, settings.sharp_alpha);
-            (map, probe)
-        });
+        if self.map.is_none() {
+            self.map = fill(scene, settings, control).map(|map| {
+                let probe = Probe::new(scene, &map, settings.sharp_alpha);
+                (map, probe)
+            });
+        }
+        let Some((map, _)) = &self.map else { return PassEnd::Cancelled };
         let camera_pass = CameraPass {
             wavelengths: settings.wavelengths,
             expressions: &self.expressions,
@@ -223,7 +224,8 @@ const NAMES: MapNames = MapNames {
     expects_everywhere: true,
 };
 
-fn fill(scene: &Scene, settings: &DirectViewSettings) -> LitMap {
+/// `None` if the render was cancelled meanwhile.
+fn fill(scene: &Scene, settings: &DirectViewSettings, control: &Control<'_>) -> Option<LitMap> {
     let walk = PhotonWalk {
         max_depth: settings.max_photon_depth,
         sharp_alpha: settings.sharp_alpha,
@@ -244,11 +246,12 @@ fn fill(scene: &Scene, settings: &DirectViewSettings) -> LitMap {
         k: settings.k as usize,
         max_radius: settings.max_radius,
         estimate: settings.estimate,
+        place_step: 0,
     };
     let target = match settings.show {
         Show::All | Show::ShadowRays => Target::Anything,
         Show::Caustics => Target::SharpShapes,
     };
     let aim = settings.photons.towards(target, settings.sharp_alpha);
-    LitMap::fill(scene, &PhotonEmitter::aimed(scene, &aim), &plan).0
+    LitMap::fill(scene, &PhotonEmitter::aimed(scene, &aim), &plan, control).map(|(map, _)| map)
 }

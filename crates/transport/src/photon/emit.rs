@@ -207,8 +207,8 @@ impl Source {
         n_cells: usize,
         scheme: MapScheme,
     ) -> (Option<Box<Self>>, f64) {
-        let aimed = targets
-            .map_or(Aimed::Everywhere, |targets| Aim::new(light, context, targets, n_cells, scheme));
+        let aimed =
+            targets.map_or(Aimed::Everywhere, |targets| Aim::new(light, context, targets, n_cells, scheme));
         let (aim, share) = match aimed {
             Aimed::Nowhere => return (None, 0.0),
             Aimed::Everywhere => (None, 1.0),

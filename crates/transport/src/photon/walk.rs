@@ -19,10 +19,11 @@ use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;
 
 use super::{EmittedPhoton, PhotonEmitter, PhotonPattern, Switches, Trail};
-use crate::integrator::RayCounts;
+use crate::integrator::{Control, RayCounts};
 use crate::lpe::{Event, SHARP_ALPHA};
 use crate::path::camera_pass::{Tracer, WavelengthMode};
 use crate::path::roulette::survival_probability;
+use crate::render::Unobserved;
 
 /// What becomes of a photon where a part of its flux is absorbed (SPEC PHT-3 to PHT-9, EXP-10).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -372,16 +373,31 @@ pub fn trace_photons<T: Send>(
     walk: &PhotonWalk,
     gather: impl Fn(u64, &PhotonVertex<'_>, &mut Vec<T>) -> Onward + Sync,
 ) -> (Vec<T>, RayCounts) {
+    trace_photons_until(scene, emitter, range, walk, &Control::new(&Unobserved), gather)
+}
+
+/// The same, but that no more tasks are begun once the render is cancelled. Each reports its rays when it is done.
+pub(crate) fn trace_photons_until<T: Send>(
+    scene: &Scene,
+    emitter: &PhotonEmitter,
+    range: Range<u64>,
+    walk: &PhotonWalk,
+    control: &Control<'_>,
+    gather: impl Fn(u64, &PhotonVertex<'_>, &mut Vec<T>) -> Onward + Sync,
+) -> (Vec<T>, RayCounts) {
     let n_tasks = range.end.saturating_sub(range.start).div_ceil(PHOTONS_PER_TASK);
     let parts: Vec<(Vec<T>, RayCounts)> = (0..n_tasks)
         .into_par_iter()
         .map(|task| {
-            let tracer = Tracer::new(scene);
+            let (tracer, mut gathered) = (Tracer::new(scene), Vec::new());
+            if control.is_cancelled() {
+                return (gathered, tracer.counts());
+            }
             let start = range.start + task * PHOTONS_PER_TASK;
-            let mut gathered = Vec::new();
             for index in start..range.end.min(start + PHOTONS_PER_TASK) {
                 walk.trace(&tracer, emitter, index, &mut |vertex| gather(index, vertex, &mut gathered));
             }
+            control.tile_done(0, tracer.counts());
             (gathered, tracer.counts())
         })
         .collect();

@@ -7,12 +7,13 @@ use etendue_scene::bsdf::{Bsdf, Lobes};
 use etendue_scene::scene::Surface;
 use etendue_spectrum::{Sampled, Wavelengths, Xyz, flux_to_xyz};
 
-use crate::integrator::RayCounts;
+use crate::integrator::Control;
 use crate::lpe::Event;
 use crate::photon::estimate::radiance::{LitPlace, radiance};
 use crate::photon::estimate::{Density, DensityEstimate, EstimateScratch, Photons};
 use crate::photon::map::{PhotonMap, StoredPhoton};
-use crate::photon::{Absorption, Onward, PhotonEmitter, PhotonVertex, PhotonWalk, Trail, trace_photons};
+use crate::photon::walk::trace_photons_until;
+use crate::photon::{Absorption, Onward, PhotonEmitter, PhotonVertex, PhotonWalk, Trail};
 
 /// The lobes of a surface that photons light: all but mirrors and what is nearly as sharp, which rays are for (SPEC LPE-5).
 #[inline]
@@ -69,6 +70,8 @@ pub(crate) struct MapPlan {
     pub(crate) max_radius: Option<f32>,
     /// How density is estimated.
     pub(crate) estimate: DensityEstimate,
+    /// The place of one of so many photons is told; 0 for none.
+    pub(crate) place_step: usize,
 }
 
 /// A photon map that surfaces can ask.
@@ -82,8 +85,6 @@ pub(crate) struct LitMap {
     pub(crate) max_radius: f32,
     /// How density is estimated.
     pub(crate) estimate: DensityEstimate,
-    /// Rays that were traced for it.
-    pub(crate) rays: RayCounts,
 }
 
 /// Where a photon arrived, and the geometric normal on the side that it came from.
@@ -118,12 +119,17 @@ const RADIUS_MARGIN: f32 = 1.25;
 const RADIUS_OF_FEW: f32 = 0.25;
 
 impl LitMap {
-    /// Emits photons until there are as many as planned, or as many were emitted as is worthwhile. The places where they
-    /// arrived come with it.
+    /// Emits photons until there are as many as planned, or as many were emitted as is worthwhile. Places where they arrived
+    /// come with it. `None` if the render was cancelled meanwhile.
     #[must_use]
-    pub(crate) fn fill(scene: &Scene, emitter: &PhotonEmitter, plan: &MapPlan) -> (Self, Vec<Arrival>) {
+    pub(crate) fn fill(
+        scene: &Scene,
+        emitter: &PhotonEmitter,
+        plan: &MapPlan,
+        control: &Control<'_>,
+    ) -> Option<(Self, Vec<Arrival>)> {
         let mut shots: Vec<Shot> = Vec::new();
-        let (mut n_emitted, mut rays) = (0, RayCounts::default());
+        let mut n_emitted = 0;
         let most = plan.n_photons.saturating_mul(MOST_EMITTED).max(LEAST_EMITTED);
         // Of photons that branch few are enough to tell how many are kept.
         let first = if plan.walk.absorption == Absorption::Branch { 1 << 11 } else { 1 << 20 };
@@ -131,10 +137,12 @@ impl LitMap {
         while next > 0 || n_emitted == 0 && plan.n_photons > 0 && !emitter.is_dark() {
             let range = n_emitted..n_emitted + next.max(1);
             n_emitted = range.end;
-            let (more, counts) = trace_photons(scene, emitter, range, &plan.walk, |index, vertex, kept| {
-                visit(plan, index, vertex, kept)
-            });
-            rays += counts;
+            let keep =
+                |index, vertex: &PhotonVertex<'_>, kept: &mut Vec<Shot>| visit(plan, index, vertex, kept);
+            let (more, _) = trace_photons_until(scene, emitter, range, &plan.walk, control, keep);
+            if control.is_cancelled() {
+                return None;
+            }
             shots.extend(more);
             next = next_round(plan.n_photons, shots.len() as u64, n_emitted, most);
         }
@@ -144,12 +152,17 @@ impl LitMap {
             shots.truncate(shots.partition_point(|shot| shot.index <= last));
             n_emitted = last + 1;
         }
+        let n_places = if plan.place_step > 0 { shots.len().div_ceil(plan.place_step) } else { 0 };
+        let places = shots.iter().step_by(plan.place_step.max(1)).take(n_places);
+        let arrivals = places.map(|shot| Arrival { p: shot.photon.position, n: shot.n }).collect();
         let photons: Vec<StoredPhoton> = shots.iter().map(|shot| shot.photon).collect();
-        let arrivals = shots.iter().map(|shot| Arrival { p: shot.photon.position, n: shot.n }).collect();
+        // There may be many millions: what is not needed any more goes before the map comes.
+        drop(shots);
         let map = PhotonMap::from_photons(&photons, n_emitted);
+        drop(photons);
         let k = plan.k.max(1);
         let max_radius = plan.max_radius.unwrap_or_else(|| fitting_radius(scene, &map, k));
-        (Self { map, k, max_radius, estimate: plan.estimate, rays }, arrivals)
+        Some((Self { map, k, max_radius, estimate: plan.estimate }, arrivals))
     }
 
     /// Finds the photons around a place, for the estimate.

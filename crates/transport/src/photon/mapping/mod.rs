@@ -32,7 +32,7 @@ pub(super) use settings::{
 };
 
 use self::precomputed::Precomputed;
-use crate::integrator::{Control, Integrator, PassEnd, Passes, RayCounts, ReportEntry};
+use crate::integrator::{Control, Integrator, PassEnd, Passes, ReportEntry};
 use crate::lpe::PathExpressions;
 use crate::path::camera_pass::{CameraPass, CameraPath, Follow, FollowedPath, Tracer};
 use crate::photon::estimate::EstimateScratch;
@@ -81,11 +81,10 @@ impl Integrator for PhotonMapping {
 
     fn run_pass(&mut self, scene: &Scene, pass: u64, film: &mut Film, control: &Control<'_>) -> PassEnd {
         let settings = &self.settings;
-        let maps = self.maps.get_or_insert_with(|| {
-            let (maps, rays) = Maps::new(scene, settings);
-            control.tile_done(0, rays);
-            maps
-        });
+        if self.maps.is_none() {
+            self.maps = Maps::new(scene, settings, control);
+        }
+        let Some(maps) = &self.maps else { return PassEnd::Cancelled };
         let camera_pass = CameraPass {
             wavelengths: settings.wavelengths,
             expressions: &self.expressions,
@@ -152,7 +151,8 @@ const CAUSTIC_NAMES: MapNames = MapNames {
 };
 
 impl Maps {
-    fn new(scene: &Scene, settings: &MappingSettings) -> (Self, RayCounts) {
+    /// `None` if the render was cancelled meanwhile.
+    fn new(scene: &Scene, settings: &MappingSettings, control: &Control<'_>) -> Option<Self> {
         let emitter = PhotonEmitter::new(scene);
         let walk = PhotonWalk {
             max_depth: settings.max_photon_depth,
@@ -170,8 +170,13 @@ impl Maps {
             k: settings.global_k as usize,
             max_radius: settings.global_radius,
             estimate: settings.global_estimate(),
+            place_step: settings.precompute as usize,
         };
-        let (global, global_places) = LitMap::fill(scene, &emitter, &plan);
+        let precompute = |map: &LitMap, places: Vec<_>, plan: &MapPlan| {
+            (plan.place_step > 0).then(|| Precomputed::new(map, &places, plan.place_step, control))
+        };
+        let (global, places) = LitMap::fill(scene, &emitter, &plan, control)?;
+        let global_irradiance = precompute(&global, places, &plan);
         let plan = MapPlan {
             n_photons: u64::from(settings.caustic_photons),
             content: Content::Caustic,
@@ -179,18 +184,17 @@ impl Maps {
             k: settings.caustic_k as usize,
             max_radius: settings.caustic_radius,
             estimate: settings.estimate,
+            place_step: settings.precompute.min(1) as usize,
         };
         let aim = settings.photons.towards(Target::SharpShapes, settings.sharp_alpha);
-        let (caustic, caustic_places) = LitMap::fill(scene, &PhotonEmitter::aimed(scene, &aim), &plan);
-        let precompute =
-            |map, places: &[_], step| (settings.precompute > 0).then(|| Precomputed::new(map, places, step));
-        let global_irradiance = precompute(&global, &global_places, settings.precompute as usize);
-        let caustic_irradiance = precompute(&caustic, &caustic_places, 1);
+        let (caustic, places) = LitMap::fill(scene, &PhotonEmitter::aimed(scene, &aim), &plan, control)?;
+        let caustic_irradiance = precompute(&caustic, places, &plan);
+        if control.is_cancelled() {
+            return None;
+        }
         let global_probe = Probe::new(scene, &global, settings.sharp_alpha);
         let caustic_probe = Probe::new(scene, &caustic, settings.sharp_alpha);
-        let mut rays = global.rays;
-        rays += caustic.rays;
-        let maps = Self {
+        Some(Self {
             accurate_distance: settings.accurate_distance.unwrap_or(2.0 * global_probe.mean_radius),
             is_dark: emitter.is_dark(),
             global,
@@ -199,8 +203,7 @@ impl Maps {
             caustic_irradiance,
             global_probe,
             caustic_probe,
-        };
-        (maps, rays)
+        })
     }
 }
 

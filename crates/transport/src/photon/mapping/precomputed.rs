@@ -14,6 +14,7 @@ use etendue_spectrum::Xyz;
 use rayon::prelude::*;
 
 use super::lit_map::{Arrival, LitMap};
+use crate::integrator::{Control, RayCounts};
 use crate::photon::estimate::{EstimateScratch, irradiance};
 
 /// Places that are looked at for one with a similar normal.
@@ -44,19 +45,21 @@ struct Place {
 }
 
 impl Precomputed {
-    /// The irradiance at every `step`-th of the places where the photons of a map arrived.
+    /// The irradiance at places where photons of a map arrived, one of `step`. What it says is of no use if the render was
+    /// cancelled meanwhile.
     #[must_use]
-    pub(crate) fn new(map: &LitMap, arrivals: &[Arrival], step: usize) -> Self {
-        let step = step.max(1);
-        let chosen: Vec<Arrival> = arrivals.iter().copied().step_by(step).collect();
-        let positions: Vec<Point3> = chosen.iter().map(|arrival| arrival.p).collect();
+    pub(crate) fn new(map: &LitMap, arrivals: &[Arrival], step: usize, control: &Control<'_>) -> Self {
+        let positions: Vec<Point3> = arrivals.iter().map(|arrival| arrival.p).collect();
         let (points, order) = PackedPoints::new(&positions);
         let places = order
             .par_chunks(PLACES_PER_TASK)
             .flat_map_iter(|chunk| {
                 let mut scratch = EstimateScratch::default();
-                let ask = |index: &u32| place(map, chosen[*index as usize], step, &mut scratch);
-                chunk.iter().map(ask).collect::<Vec<Place>>()
+                let ask = |index: &u32| place(map, arrivals[*index as usize], step, &mut scratch);
+                let chunk = if control.is_cancelled() { &[] } else { chunk };
+                let places: Vec<Place> = chunk.iter().map(ask).collect();
+                control.tile_done(0, RayCounts::default());
+                places
             })
             .collect();
         Self { points, places, is_whole: step == 1 }
