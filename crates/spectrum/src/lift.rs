@@ -54,7 +54,7 @@ pub fn lift(xyz: Xyz, wavelengths: &Wavelengths) -> Sampled {
         return wavelengths.of_bands(Bands::from_rgb(rgb));
     }
     let largest = rgb[0].max(rgb[1]).max(rgb[2]);
-    if !(largest > 0.0) {
+    if largest.is_nan() || largest <= 0.0 {
         return Sampled::ZERO;
     }
     if rgb.iter().all(|v| *v >= INSIDE * largest) {
@@ -83,9 +83,9 @@ impl BandSum {
     /// With this XYZ, of the widest bands that reach it.
     fn of(xyz: Xyz) -> Self {
         let rings = rings();
-        let sums = rings.iter().map(|ring| ring.sum(xyz));
+        let mut sums = rings.iter().map(|ring| ring.sum(xyz));
         let widest = sums.clone().find(|sum| sum.white >= 0.0);
-        widest.or_else(|| sums.last().map(|sum| sum.without_white(xyz.y))).unwrap_or(Self {
+        widest.or_else(|| sums.next_back().map(|sum| sum.without_white(xyz.y))).unwrap_or(Self {
             white: xyz.y,
             width_nm: WIDTHS_NM[0],
             bands: [(0.0, 550.0); 2],

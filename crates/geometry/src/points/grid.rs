@@ -2,6 +2,8 @@
 //! (Teschner et al. 2003, "Optimized Spatial Hashing for Collision Detection of Deformable Objects"; SPEC KD-2). For questions
 //! of one radius, about the side of a cell; for the nearest `k` the radius is doubled until there are as many.
 
+use std::cmp::Ordering;
+
 use etendue_math::{Point3, hash64};
 
 use super::found::{Neighbour, Neighbours, square_of_radius};
@@ -63,7 +65,8 @@ impl HashGrid {
     pub fn nearest(&self, p: Point3, k: usize, max_radius: f32, found: &mut Neighbours) {
         let mut radius = self.cell_size;
         loop {
-            let is_last = !(radius < max_radius) || self.is_all_within(p, radius);
+            let is_last = !radius.partial_cmp(&max_radius).is_some_and(Ordering::is_lt)
+                || self.is_all_within(p, radius);
             found.start(k, if is_last { max_radius } else { radius });
             let searched = if is_last { max_radius } else { radius };
             if k > 0 {
@@ -97,7 +100,7 @@ impl HashGrid {
         let first = self.cell([0, 1, 2].map(|axis| (p[axis] - reach(axis)).max(self.bounds.0[axis])));
         let last = self.cell([0, 1, 2].map(|axis| (p[axis] + reach(axis)).min(self.bounds.1[axis])));
         let n_along = |axis: usize| (i64::from(last[axis]) - i64::from(first[axis]) + 1).max(0) as f64;
-        if !(n_along(0) * n_along(1) * n_along(2) < self.items.len() as f64) {
+        if n_along(0) * n_along(1) * n_along(2) >= self.items.len() as f64 {
             self.items.iter().for_each(|item| visit(item, item.square_of_distance(p)));
             return;
         }
@@ -123,7 +126,8 @@ impl HashGrid {
         let reach = |axis: usize, p: f32| (p - min[axis]).abs().max((max[axis] - p).abs());
         let (x, y, z) = (reach(0, p.x), reach(1, p.y), reach(2, p.z));
         // Also where nothing is near to anything.
-        !((x * x + y * y + z * z).sqrt() > radius * (1.0 - 4.0 * SLACK))
+        let farthest = (x * x + y * y + z * z).sqrt();
+        !farthest.partial_cmp(&(radius * (1.0 - 4.0 * SLACK))).is_some_and(Ordering::is_gt)
     }
 
     /// The cell of a place. Beyond the range of integers all lie in the last.

@@ -47,7 +47,7 @@ impl HeapTree {
         sort_into_tree(&mut items, &mut axes_in_order);
         let (mut nodes, mut axes) = (Vec::with_capacity(items.len()), Vec::with_capacity(items.len()));
         // Ranges of points, in the order of the nodes that are their roots.
-        let mut level = vec![0..items.len()];
+        let mut level: Vec<_> = std::iter::once(0..items.len()).collect();
         while !level.is_empty() {
             let mut next = Vec::with_capacity(2 * level.len());
             for range in level {
