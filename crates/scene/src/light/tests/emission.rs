@@ -7,6 +7,11 @@ use etendue_math::{Bounds3, Point2, Ray, warp};
 
 use super::*;
 
+/// What portals are allowed. The cosine and the Jacobian within cells of a table of 32 by 32, whose middles are weighed, make a
+/// relative deviation of 0.112 by numeric integration, of kurtosis 122 (grazing cells); 0.112 sqrt(1 + 4.5 e) with the relative
+/// standard error e = sqrt((122 - 1) / 400) of the variance of 400 rays.
+const PORTAL: f64 = 0.21;
+
 /// Every kind of light, with the relative deviation of the flux of its rays that is allowed.
 fn kinds() -> Vec<(&'static str, World, f64)> {
     let mut assets = Assets::default();
@@ -26,8 +31,8 @@ fn kinds() -> Vec<(&'static str, World, f64)> {
         ("distant", entity("distant"), 1e-5),
         ("constant", entity("infinite"), 1e-4),
         ("image", mapped("infinite"), 1e-3),
-        ("portal", mapped("infinite").with("portal", Value::Points3(corners.clone())), 0.1),
-        ("constant portal", entity("infinite").with("portal", Value::Points3(corners)), 0.1),
+        ("portal", mapped("infinite").with("portal", Value::Points3(corners.clone())), PORTAL),
+        ("constant portal", entity("infinite").with("portal", Value::Points3(corners)), PORTAL),
         ("sky", entity("sky").with("elevation", floats(&[30.0])), 0.15),
         ("sun", entity("sun").with("elevation", floats(&[30.0])), 0.02),
     ];
