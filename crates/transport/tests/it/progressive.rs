@@ -142,7 +142,7 @@ fn the_still_life_is_that_of_the_path_tracer() {
     }
     let scene = still_life("still life", [32, 32], FRONT);
     let depth = ("maxdepth", integer(7));
-    let path = block_moments(&by(scene, "path", &[depth.clone()]), 64, 4);
+    let path = block_moments(&by(scene, "path", std::slice::from_ref(&depth)), 64, 4);
     let scene = still_life("still life", [32, 32], FRONT);
     let small = [depth, ("radius", float(0.04)), ("photonsperiteration", integer(16_000))];
     let sppm = block_moments(&by(scene, "sppm", &small), 40, 4);
