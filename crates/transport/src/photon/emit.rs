@@ -122,7 +122,7 @@ impl PhotonEmitter {
             let light = &scene.lights[*index];
             (*index, Source::new(light, &context, targets.as_ref(), n_cells, settings.scheme))
         };
-        let prepared: Vec<(usize, (Option<Box<Source>>, f64))> = by_power.par_iter().map(prepare).collect();
+        let prepared: Vec<_> = by_power.par_iter().map(prepare).collect();
         let mut sources = vec![None; powers.len()];
         let mut sent = powers.clone();
         for (index, (source, share)) in prepared {
@@ -208,7 +208,7 @@ impl Source {
         scheme: MapScheme,
     ) -> (Option<Box<Self>>, f64) {
         let aimed =
-            targets.map_or(Aimed::Everywhere, |targets| Aim::new(light, context, targets, n_cells, scheme));
+            targets.map_or(Aimed::Everywhere, |targets| Aim::of(light, context, targets, n_cells, scheme));
         let (aim, share) = match aimed {
             Aimed::Nowhere => return (None, 0.0),
             Aimed::Everywhere => (None, 1.0),

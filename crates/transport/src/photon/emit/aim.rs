@@ -110,7 +110,7 @@ pub(super) enum Aimed {
 
 impl Aim {
     /// The map of a light, whose squares are cut into `n` by `n` cells.
-    pub(super) fn new(
+    pub(super) fn of(
         light: &Light,
         context: &LightContext,
         targets: &Targets,
@@ -121,7 +121,7 @@ impl Aim {
             return Aimed::Nowhere;
         }
         if let Directions::Parallel(w) = light.directions(context) {
-            return PlaneMap::new(w, &targets.spheres, context, n);
+            return PlaneMap::across(w, &targets.spheres, context, n);
         }
         if light.is_infinite() {
             return discs(light, &targets.few_spheres, context);
@@ -366,7 +366,7 @@ pub(super) struct PlaneMap {
 
 impl PlaneMap {
     /// For light in the unit direction `w`.
-    fn new(w: Vector3, spheres: &[BoundingSphere], context: &LightContext, n: usize) -> Aimed {
+    fn across(w: Vector3, spheres: &[BoundingSphere], context: &LightContext, n: usize) -> Aimed {
         let frame = Frame::from_z(w);
         let sphere = &context.tables.scene_sphere;
         let discs: Vec<(Point2, f32)> = spheres
