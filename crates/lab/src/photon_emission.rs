@@ -122,7 +122,8 @@ fn run(scene: &Scene, emitter: &PhotonEmitter, walk: &PhotonWalk, n: u64, place:
                     Place::Room => true,
                 };
                 let cell = |t: f32| {
-                    (t >= -1.0 && t < 1.0)
+                    (-1.0..1.0)
+                        .contains(&t)
                         .then(|| ((0.5 * (t + 1.0) * N_CELLS as f32) as usize).min(N_CELLS - 1))
                 };
                 let on_floor = is_counted && p.y.abs() < 1e-3;
