@@ -1,10 +1,15 @@
 //! Photon maps against path tracing, against themselves, and on scenes where there is nothing to map.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use etendue_math::statistics::Moments;
 use etendue_scene::document::{Entity, Value};
 use etendue_scene::{Film, Scene};
 use etendue_transport::lpe::PathExpressions;
-use etendue_transport::{ReportEntry, Stop, Unobserved, method, render, with_own_layers};
+use etendue_transport::{
+    Flow, Integrator, Observer, Outcome, RayCounts, ReportEntry, Stop, Unobserved, method, render,
+    with_own_layers,
+};
 
 use crate::support::{Setup, flat, layer, lit, luminance, render_layers};
 
@@ -83,6 +88,94 @@ fn four_terms_agree_with_paths() {
             mean(&ours),
             mean(&theirs)
         );
+    }
+}
+
+/// Stops a render as soon as it is asked.
+#[derive(Debug, Default)]
+struct Impatient(AtomicU64);
+
+impl Observer for Impatient {
+    fn tile_done(&self, _: u64, rays: RayCounts) -> Flow {
+        self.0.fetch_add(rays.closest, Ordering::Relaxed);
+        Flow::Stop
+    }
+
+    fn pass_done(&self, _: u64, _: &Film, _: &dyn Integrator) -> Flow {
+        Flow::Stop
+    }
+}
+
+/// Maps of millions of photons are not made to the end when the render is stopped.
+#[test]
+fn maps_can_be_cancelled() {
+    for (name, photons) in [("photonmap", "globalphotons"), ("photons", "photons")] {
+        let scene = room_scene("cancelled", entity(name, &[(photons, 20_000_000)]), 8);
+        let expressions = with_own_layers(&scene.integrator, PathExpressions::default());
+        let mut film = Film::new(scene.film.clone(), expressions.names().to_vec());
+        let (integrator, _) = method(&scene.integrator, expressions);
+        let observer = Impatient::default();
+        let stop = Stop { passes: 0..1, error: None };
+        let mut integrator = integrator.expect("a method");
+        let outcome = render(&scene, integrator.as_mut(), &mut film, &stop, &observer);
+        assert_eq!(outcome, Outcome::Stopped);
+        assert!(observer.0.load(Ordering::Relaxed) < 1_000_000, "{observer:?}");
+    }
+}
+
+/// Mean luminance of an image and of its indirect term.
+fn means(scene: &Scene, n_passes: u64) -> [f64; 2] {
+    let (film, _) = run(scene, n_passes);
+    [mean(&luminance(&film)), mean(&layer(&film, "indirect"))]
+}
+
+/// Irradiance that was computed before changes nothing in the mean: neither where a radius holds so few photons that there is often
+/// no place within it, nor where shading normals differ from geometric ones.
+#[test]
+fn precomputed_irradiance_is_that_of_the_map() {
+    let bent = room().replace("\"point3 P\" [-1 -1 -1", "\"normal N\" [1 1 1  -1 1 1  1 1 -1  -1 1 -1  1 -1 1  -1 -1 1  1 -1 -1  -1 -1 -1]\n\"point3 P\" [-1 -1 -1");
+    assert!(bent.contains("normal N"));
+    // Three photons of 20 000 on 26 square metres lie within 35 mm. An estimate at a photon holds that one, too, and so is
+    // too bright by a third; without it half of the places would be dark.
+    for (name, world, radius, tolerance) in
+        [("sparse", room(), Some(0.035), 0.15), ("bent", bent, None, 0.02)]
+    {
+        let setup = Setup { size: [24, 24], camera: CAMERA, world: &world, ..Setup::default() };
+        let mut found = [0, 4].map(|step| {
+            let small = [("globalphotons", 20_000), ("causticphotons", 1000), ("precompute", step)];
+            let mut scene = setup.scene(name);
+            scene.integrator = entity("photonmap", &small);
+            if let Some(radius) = radius {
+                scene.integrator = scene.integrator.with("globalradius", Value::Floats(vec![radius]));
+            }
+            means(&scene, 16)[1]
+        });
+        found[1] /= found[0];
+        assert!((found[1] - 1.0).abs() < tolerance, "{name}: {} of the map's", found[1]);
+    }
+}
+
+/// A coat is as sharp or as wide as the metal below it for photons and for rays that ask them, though its samples are not: no
+/// light is lost or counted twice.
+#[test]
+fn coated_metals_agree_with_paths() {
+    for (coat, base) in [(0.05, 0.3), (0.12, 0.02)] {
+        let metal = format!(
+            "Material \"coatedconductor\" \"bool remaproughness\" false \"float interface.roughness\" {coat} \"float conductor.roughness\" {base}"
+        );
+        let world = room().replace("Material \"dielectric\"", &metal);
+        let setup = Setup { size: [24, 24], camera: CAMERA, world: &world, ..Setup::default() };
+        let mut scene = setup.scene("coated");
+        scene.integrator = entity("photonmap", &[("globalphotons", 60_000), ("causticphotons", 60_000)]);
+        let (film, _) = run(&scene, 48);
+        let mut scene = setup.scene("coated paths");
+        scene.integrator = entity("path", &[("maxdepth", 64)]);
+        let paths = render_layers(&scene, 0..800, &[]);
+        let (ours, theirs) = (luminance(&film), luminance(&paths));
+        let difference: Moments = ours.iter().zip(&theirs).map(|(a, b)| a - b).collect();
+        let expected = mean(&theirs);
+        let tolerance = 0.01 * expected + 3.0 * difference.standard_error();
+        assert!(difference.mean().abs() < tolerance, "{coat} {base}: {} instead of {expected}", mean(&ours));
     }
 }
 
