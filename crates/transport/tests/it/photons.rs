@@ -288,7 +288,7 @@ fn empty_scenes_have_no_photons() {
                 });
                 assert_eq!(
                     !found.is_empty(),
-                    has_photons && n > 100 || !found.is_empty() && has_photons,
+                    has_photons && (n > 100 || !found.is_empty()),
                     "{world} {n}"
                 );
             }
