@@ -23,6 +23,7 @@ use crate::integrator::{Control, Integrator, PassEnd, Passes};
 use crate::lpe::PathExpressions;
 use crate::path::camera_pass::{CameraPass, CameraPath, Follow, FollowedPath, Tracer};
 
+pub(crate) use artist::Artist;
 pub(crate) use mirrored::Mirrored;
 pub use settings::{LightStrategy, PathSettings};
 

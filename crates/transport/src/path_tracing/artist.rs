@@ -15,7 +15,7 @@ use crate::lpe::Event;
 
 /// What the way from the camera leaves to be found.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Artist {
+pub(crate) struct Artist {
     /// The path has scattered diffusely.
     is_diffuse: bool,
     /// And sharply since.
@@ -33,7 +33,7 @@ const fn is_sharp(event: Event) -> bool {
 
 impl Artist {
     /// The lobes through which light that was sampled may be seen at a shape.
-    pub(super) fn lobes(&self, controls: &Controls, id: GeometryId, bsdf: &Bsdf, sharp_alpha: f32) -> Lobes {
+    pub(crate) fn lobes(&self, controls: &Controls, id: GeometryId, bsdf: &Bsdf, sharp_alpha: f32) -> Lobes {
         let (diffuse, sharp) = (self.admits_indirect(controls, id), self.admits_caustic(controls, id));
         let glossy_is_sharp = is_sharp(Event::glossy(bsdf.glossy_roughness(), sharp_alpha));
         let glossy = if glossy_is_sharp { sharp } else { diffuse };
@@ -46,7 +46,7 @@ impl Artist {
     }
 
     /// Notes that the path scatters at a shape; `false` if all that it may find from here is switched off.
-    pub(super) fn scatter(&mut self, controls: &Controls, id: GeometryId, event: Event) -> bool {
+    pub(crate) fn scatter(&mut self, controls: &Controls, id: GeometryId, event: Event) -> bool {
         self.from = Some(id);
         if is_sharp(event) {
             self.no_caustic = !self.admits_caustic(controls, id);
@@ -66,7 +66,7 @@ impl Artist {
     }
 
     /// False if light that the path runs into is switched off.
-    pub(super) fn admits(&self, controls: &Controls, light: LightId) -> bool {
+    pub(crate) fn admits(&self, controls: &Controls, light: LightId) -> bool {
         let is_hidden = self.is_diffuse && self.is_sharp && self.no_caustic;
         !is_hidden && self.from.is_none_or(|from| controls.reaches(light, from))
     }

@@ -10,7 +10,7 @@ use etendue_scene::medium::MediumId;
 use etendue_scene::scene::Surface;
 use etendue_spectrum::Sampled;
 
-use super::artist::Artist;
+use super::Artist;
 use super::{LightStrategy, PathSettings};
 use crate::lpe::{Event, LayerRecorder};
 use crate::path::camera_pass::{CameraPath, Tracer};

@@ -1,5 +1,6 @@
 //! Switches of artists (SPEC EMI-14): each removes exactly the component that it names, and lights reach whom they may.
 
+use etendue_math::statistics::Moments;
 use etendue_scene::Scene;
 use etendue_scene::document::{Entity, Value};
 
@@ -116,4 +117,57 @@ fn linked_lights_reach_whom_they_may() {
     let all = linked("reached", "", 5.0, "");
     let pixels = |scene| luminance(&render_passes(scene, 0..8));
     expect_equal_pixels("all groups are named", &pixels(&reached), &pixels(&all), 1e-4);
+}
+
+fn by_photons(scene: Scene) -> Scene {
+    let integers = |entity: Entity, name, value| entity.with(name, Value::Integers(vec![value]));
+    let few = integers(Entity::new("photonmap"), "globalphotons", 40_000);
+    Scene { integrator: integers(few, "causticphotons", 20_000), ..scene }
+}
+
+/// Two images whose means differ by no more than noise and this share of the first: what maps blur.
+#[track_caller]
+fn expect_alike(what: &str, paths: &[f64], photons: &[f64], bias: f64) {
+    let difference: Moments = photons.iter().zip(paths).map(|(a, b)| a - b).collect();
+    let mean = paths.iter().sum::<f64>() / paths.len() as f64;
+    let tolerance = bias * mean + 5.0 * difference.standard_error();
+    assert!(
+        difference.mean().abs() < tolerance,
+        "{what}: {} beside {mean}, tolerance {tolerance}",
+        difference.mean()
+    );
+}
+
+/// Photon maps leave out what paths leave out: the part that a switch names is a twenty-fifth of the image, the tolerance
+/// a quarter of that and noise.
+#[test]
+fn photons_heed_switches() {
+    let (whole, _) = of_both("", 200);
+    for name in ["castscaustics", "receivescaustics", "castsindirect", "receivesindirect"] {
+        let (paths, photons) = of_both(&format!("\"bool {name}\" false"), 100);
+        let sum = |image: &[f64]| image.iter().sum::<f64>();
+        assert!(
+            sum(&paths) < 0.98 * sum(&whole),
+            "{name} switches something off: {}",
+            sum(&paths) / sum(&whole)
+        );
+        expect_alike(name, &paths, &photons, 0.01);
+    }
+}
+
+/// The scene with a switch by paths and by photons.
+fn of_both(switch: &str, n_passes: u64) -> (Vec<f64>, Vec<f64>) {
+    let paths = luminance(&render_passes(&scene(switch, "", ""), 0..n_passes));
+    let photons = luminance(&render_passes(&by_photons(scene(switch, "", "")), 0..16));
+    (paths, photons)
+}
+
+/// Nor do photons of lights come to shapes that those do not reach, nor do rays that gather see them there.
+#[test]
+fn photons_heed_links() {
+    let dark = luminance(&render_passes(&linked("dark", "", 0.0, ""), 0..200));
+    let unreached = linked("unreached", "\"string lights\" [ \"fill\" ]", 5.0, "");
+    // The lamp itself is seen by the camera in neither.
+    let photons = luminance(&render_passes(&by_photons(unreached), 0..32));
+    expect_alike("linked", &dark, &photons, 0.02);
 }

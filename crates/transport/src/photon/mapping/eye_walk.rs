@@ -32,6 +32,7 @@ use crate::path::direct::{choose_light, visibility};
 use crate::path::features::describe;
 use crate::path::mis::power_heuristic;
 use crate::path::roulette::survival_probability;
+use crate::path_tracing::Artist;
 use crate::photon::estimate::EstimateScratch;
 
 /// Parts of the image, in the order of [`TERM_NAMES`] (SPEC EXP-11).
@@ -117,6 +118,8 @@ struct EyeWalk<'m> {
     distance: f32,
     /// The part of the image that light belongs to which is found from here on, but for lamps.
     term: Term,
+    /// Of no use where nothing is switched off.
+    artist: Artist,
     radiance: Sampled,
 }
 
@@ -140,6 +143,7 @@ pub(crate) fn follow(
         n_sharp: 0,
         distance: 0.0,
         term: Term::Direct,
+        artist: Artist::default(),
         radiance: Sampled::ZERO,
     };
     walk.follow(tracer, path, scratch)
@@ -162,15 +166,18 @@ impl EyeWalk<'_> {
             };
             let gathers = is_accurate && self.n_wide == 0 && self.method.n_gather > 1 && !wide.is_empty();
             self.walks_per_light_sample = if gathers { self.method.n_gather as f32 } else { 1.0 };
+            let admitted = self.admitted_lobes(tracer.scene, &surface, &bsdf);
             let goes_on = if is_accurate {
-                self.add_direct_light(tracer, &surface, &bsdf, (self.lit_lobes(wide), Lobes::ALL), path);
-                self.add_caustic(&surface, &bsdf, wide, path, scratch);
+                let lit = self.lit_lobes(wide) & admitted;
+                self.add_direct_light(tracer, &surface, &bsdf, (lit, Lobes::ALL), path);
+                self.add_caustic(&surface, &bsdf, wide & admitted, path, scratch);
                 if gathers {
                     return self.gather(tracer, &surface, &bsdf, path, scratch);
                 }
                 self.scatter(tracer.scene, &surface, &bsdf, Lobes::ALL, path)
             } else {
-                self.add_global(tracer, &surface, &bsdf, wide, path, scratch);
+                self.add_direct_light_beside_map(tracer, &surface, &bsdf, wide, path);
+                self.add_global(&surface, &bsdf, wide & admitted, path, scratch);
                 self.scatter(tracer.scene, &surface, &bsdf, bsdf.lobes() & !wide, path)
             };
             if !goes_on {
@@ -215,6 +222,13 @@ impl EyeWalk<'_> {
     /// The lobes whose direct light is added where a surface is treated accurately: after a wide event sharp ones make caustics.
     fn lit_lobes(&self, wide: Lobes) -> Lobes {
         if self.n_wide == 0 { Lobes::NON_SPECULAR } else { wide }
+    }
+
+    /// The lobes through which a surface may show light that has come to it, where artists have switched something off.
+    fn admitted_lobes(&self, scene: &Scene, surface: &Surface, bsdf: &Bsdf) -> Lobes {
+        scene.controls.as_ref().map_or(Lobes::ALL, |controls| {
+            self.artist.lobes(controls, surface.hit.geometry, bsdf, self.method.sharp_alpha)
+        })
     }
 
     /// Several walks from a surface that is seen directly and whose own light has been added.
@@ -263,7 +277,9 @@ impl EyeWalk<'_> {
         let Some(sample) = bsdf.sample(surface.wo, u_component, u, TransportMode::Radiance, lobes) else {
             return false;
         };
-        self.leave(scene, (surface, bsdf), &sample, path);
+        if !self.leave(scene, (surface, bsdf), &sample, path) {
+            return false;
+        }
         let brightness = self.beta.max_value() * self.roulette_scale;
         let probability = survival_probability(brightness, ROULETTE_THRESHOLD);
         if self.depth < 2 || probability == 1.0 {
@@ -273,14 +289,20 @@ impl EyeWalk<'_> {
         path.sampler.next_1d() < probability
     }
 
+    /// Sets out in a direction; `false` if artists have switched off all that is there.
     fn leave(
         &mut self,
         scene: &Scene,
         (surface, bsdf): (&Surface, &Bsdf),
         sample: &BsdfSample,
         path: &mut CameraPath<'_, '_>,
-    ) {
+    ) -> bool {
         let event = Event::at(bsdf, sample, self.method.sharp_alpha);
+        if let Some(controls) = &scene.controls
+            && !self.artist.scatter(controls, surface.hit.geometry, event)
+        {
+            return false;
+        }
         let is_wide = matches!(event, Event::Diffuse | Event::WideGlossy);
         if self.n_wide == 0 && self.n_sharp == 0 {
             self.term = if is_wide { Term::Indirect } else { Term::Specular };
@@ -300,6 +322,7 @@ impl EyeWalk<'_> {
         if !path.layers.is_idle() {
             path.layers.scatter(event);
         }
+        true
     }
 
     fn add_surroundings(&mut self, scene: &Scene, path: &mut CameraPath<'_, '_>) {
@@ -309,6 +332,9 @@ impl EyeWalk<'_> {
         let context = scene.light_context();
         let wi = self.ray.direction;
         for &id in &scene.infinite_lights {
+            if self.is_switched_off(scene, id) {
+                continue;
+            }
             let light = scene.light(id);
             let le = light.le_infinite(&context, self.ray.origin, wi, path.lambda);
             if !le.is_black() {
@@ -319,12 +345,15 @@ impl EyeWalk<'_> {
     }
 
     fn add_emission(&mut self, scene: &Scene, surface: &Surface, path: &mut CameraPath<'_, '_>) {
-        let Some(id) = surface.light.filter(|_| self.sees_lamps()) else { return };
+        let Some(id) = surface.light.filter(|id| self.sees_lamps() && !self.is_switched_off(scene, *id))
+        else {
+            return;
+        };
         let le = scene.emitted(surface, path.lambda);
         if le.is_black() {
             return;
         }
-        let (context, light, point) = (scene.light_context(), scene.light(id), &surface.point);
+        let (context, light, point) = (scene.light_context_at(surface.time), scene.light(id), &surface.point);
         let weight = self.weight_of_hit(scene, id, |reference| {
             light.pdf_li_at(&context, reference, self.ray.direction, point.p, point.ng)
         });
@@ -334,6 +363,12 @@ impl EyeWalk<'_> {
     /// False where the light of lamps is in a map.
     fn sees_lamps(&self) -> bool {
         self.method.seen != Seen::ByMapAlone && (self.n_wide == 0 || self.n_sharp == 0)
+    }
+
+    /// True if artists keep a light from what the walk left last.
+    #[inline]
+    fn is_switched_off(&self, scene: &Scene, light: LightId) -> bool {
+        scene.controls.as_ref().is_some_and(|controls| !self.artist.admits(controls, light))
     }
 
     fn term_of_lamp(&self) -> Term {
@@ -431,25 +466,37 @@ impl EyeWalk<'_> {
         self.add_to_layers(map, surface, bsdf, wide, path, scratch);
     }
 
-    /// All light that the global map has, and what sharp glossy lobes make of lamps.
-    fn add_global(
+    /// The direct light of a surface whose other light a map tells: what sharp glossy lobes make of lamps, and all of it where that
+    /// is wanted.
+    fn add_direct_light_beside_map(
         &mut self,
         tracer: &Tracer<'_>,
         surface: &Surface,
         bsdf: &Bsdf,
         wide: Lobes,
         path: &mut CameraPath<'_, '_>,
+    ) {
+        if self.n_wide > 0 {
+            return;
+        }
+        let sharp = bsdf.lobes() & !wide;
+        let lit = match self.method.seen {
+            Seen::ByMapAndShadowRays => Lobes::NON_SPECULAR,
+            Seen::ByMapAlone => Lobes::NONE,
+            _ => sharp & Lobes::NON_SPECULAR,
+        };
+        self.add_direct_light(tracer, surface, bsdf, (lit, sharp), path);
+    }
+
+    /// All light that the global map has.
+    fn add_global(
+        &mut self,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        wide: Lobes,
+        path: &mut CameraPath<'_, '_>,
         scratch: &mut EstimateScratch,
     ) {
-        if self.n_wide == 0 {
-            let sharp = bsdf.lobes() & !wide;
-            let lit = match self.method.seen {
-                Seen::ByMapAndShadowRays => Lobes::NON_SPECULAR,
-                Seen::ByMapAlone => Lobes::NONE,
-                _ => sharp & Lobes::NON_SPECULAR,
-            };
-            self.add_direct_light(tracer, surface, bsdf, (lit, sharp), path);
-        }
         if wide.is_empty() {
             return;
         }
