@@ -286,11 +286,7 @@ fn empty_scenes_have_no_photons() {
                     found.push(());
                     Onward::Continue
                 });
-                assert_eq!(
-                    !found.is_empty(),
-                    has_photons && (n > 100 || !found.is_empty()),
-                    "{world} {n}"
-                );
+                assert_eq!(!found.is_empty(), has_photons && (n > 100 || !found.is_empty()), "{world} {n}");
             }
         }
     }
