@@ -85,7 +85,7 @@ fn photograph(path: &Path) -> Result<Photograph> {
         return Err(Failure::Usage(format!("{}: there are no channels R, G, B or Y", path.display())));
     };
     // NaN becomes black: it would spread over the whole picture.
-    let encode = |v: f32| srgb_encode(v.max(0.0).min(1.0));
+    let encode = |v: f32| if v > 0.0 { srgb_encode(v.min(1.0)) } else { 0.0 };
     let encoded = pixels.into_iter().map(|pixel| pixel.map(encode)).collect();
     Ok(Photograph { width: image.width, height: image.height, pixels: encoded })
 }
