@@ -383,7 +383,7 @@ mod tests {
     #[test]
     fn even_photons_err_less_and_roulette_keeps_power() {
         let settings = EmissionStudySettings {
-            log2_photons: vec![10, 12],
+            log2_photons: vec![12, 15],
             n_runs: 3,
             log2_reference: 19,
             ..EmissionStudySettings::quick(1)
