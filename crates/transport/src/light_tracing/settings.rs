@@ -70,13 +70,7 @@ impl LightSettings {
             unit: "",
             doc: "width of microfacets below which glossy events count as S in path expressions without G, else as D",
         },
-        ParameterSpec {
-            name: "wavelengths",
-            kind: "string",
-            default: "hero",
-            unit: "",
-            doc: "wavelengths of a path: hero (four), single, or bands (linear sRGB, as renderers without spectra)",
-        },
+        WavelengthMode::PARAMETER,
     ];
 
     /// Reads the parameters of an integrator entity.
@@ -86,12 +80,7 @@ impl LightSettings {
         let n_paths = p.count_within("lightpaths", 0, 0, MAX_PATHS);
         let mirrors = p.bool("mirrors", default.mirrors);
         let sharp_alpha = p.float("sharpalpha", default.sharp_alpha);
-        let modes = [
-            ("hero", WavelengthMode::Hero),
-            ("single", WavelengthMode::Single),
-            ("bands", WavelengthMode::Bands),
-        ];
-        let wavelengths = p.choice("wavelengths", "hero", &modes);
+        let wavelengths = p.choice("wavelengths", "hero", WavelengthMode::CHOICES);
         // Read where the scene is built; lights send paths by their power.
         p.ignore("lightsampler");
         Self { max_depth, n_paths: (n_paths > 0).then_some(n_paths), mirrors, sharp_alpha, wavelengths }

@@ -7,6 +7,7 @@ use etendue_math::{Point2, Ray, Sampler, SamplerSettings, hash64};
 use etendue_scene::camera::CameraRay;
 use etendue_scene::film::{Features, FilmTile, PixelSample, TileSamples};
 use etendue_scene::medium::MediumId;
+use etendue_scene::parameters::ParameterSpec;
 use etendue_scene::{Film, Scene};
 use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;
@@ -32,6 +33,15 @@ pub enum WavelengthMode {
 }
 
 impl WavelengthMode {
+    /// The parameter of scene files that tells it.
+    pub const PARAMETER: ParameterSpec = ParameterSpec {
+        name: "wavelengths",
+        kind: "string",
+        default: "hero",
+        unit: "",
+        doc: "wavelengths of a path: hero (four), single, or bands (linear sRGB, as renderers without spectra)",
+    };
+
     /// Their names in scene files.
     pub const CHOICES: &'static [(&'static str, Self)] =
         &[("hero", Self::Hero), ("single", Self::Single), ("bands", Self::Bands)];

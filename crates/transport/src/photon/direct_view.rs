@@ -13,7 +13,7 @@ use etendue_scene::{Film, Scene};
 use super::estimate::DensityEstimate;
 use super::mapping::{
     Content, EyeMethod, EyePass, LIGHT_SAMPLER, LitMap, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS,
-    MapNames, MapPlan, Probe, SHARP_ALPHA_SPEC, Seen, WAVELENGTHS, describe_map, length, spec,
+    MapNames, MapPlan, Probe, SHARP_ALPHA_SPEC, Seen, describe_map, length, n_parameters, spec, with_shared,
 };
 use super::{PhotonEmitter, PhotonSettings, PhotonWalk, Target};
 use crate::integrator::{Control, Integrator, PassEnd, Passes, ReportEntry};
@@ -89,33 +89,13 @@ const OWN_PARAMETERS: [ParameterSpec; 9] = [
     MAX_PHOTON_DEPTH,
     SHARP_ALPHA_SPEC,
     LIGHT_SAMPLER,
-    WAVELENGTHS,
+    WavelengthMode::PARAMETER,
 ];
-
-const N_PARAMETERS: usize =
-    OWN_PARAMETERS.len() + PhotonSettings::PARAMETERS.len() + DensityEstimate::PARAMETERS.len();
-
-/// All tables.
-const ALL_PARAMETERS: [ParameterSpec; N_PARAMETERS] = {
-    let mut all = [MAX_PHOTON_DEPTH; N_PARAMETERS];
-    let (own, photons) = (OWN_PARAMETERS.len(), PhotonSettings::PARAMETERS.len());
-    let mut i = 0;
-    while i < N_PARAMETERS {
-        all[i] = if i < own {
-            OWN_PARAMETERS[i]
-        } else if i < own + photons {
-            PhotonSettings::PARAMETERS[i - own]
-        } else {
-            DensityEstimate::PARAMETERS[i - own - photons]
-        };
-        i += 1;
-    }
-    all
-};
 
 impl DirectViewSettings {
     /// Parameters in scene files.
-    pub const PARAMETERS: &'static [ParameterSpec] = &ALL_PARAMETERS;
+    pub const PARAMETERS: &'static [ParameterSpec] =
+        &with_shared::<{ n_parameters(OWN_PARAMETERS.len()) }>(&OWN_PARAMETERS);
 
     /// Reads the parameters of an integrator entity.
     pub fn from_parameters(p: &mut Parameters<'_, '_>) -> Self {

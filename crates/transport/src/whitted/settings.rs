@@ -73,13 +73,7 @@ impl WhittedSettings {
             unit: "",
             doc: "how a light is chosen where there are more than 64: bvh, power or uniform",
         },
-        ParameterSpec {
-            name: "wavelengths",
-            kind: "string",
-            default: "hero",
-            unit: "",
-            doc: "wavelengths of a path: hero (four), single, or bands (linear sRGB, as renderers without spectra)",
-        },
+        WavelengthMode::PARAMETER,
     ];
 
     /// Reads the parameters of an integrator entity.

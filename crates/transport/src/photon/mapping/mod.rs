@@ -27,8 +27,8 @@ pub(super) use eye_walk::{EyeMethod, Seen, follow};
 pub(super) use lit_map::{Content, LitMap, MapPlan};
 pub(super) use probe::{MapNames, Probe, describe_map};
 pub(super) use settings::{
-    LIGHT_SAMPLER, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS, SHARP_ALPHA_SPEC, WAVELENGTHS, length,
-    spec,
+    LIGHT_SAMPLER, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS, SHARP_ALPHA_SPEC, length, n_parameters,
+    spec, with_shared,
 };
 
 use self::precomputed::Precomputed;

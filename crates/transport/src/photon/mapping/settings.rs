@@ -94,13 +94,6 @@ pub(in crate::photon) const SHARP_ALPHA_SPEC: ParameterSpec = spec(
 );
 pub(in crate::photon) const LIGHT_SAMPLER: ParameterSpec =
     spec("lightsampler", "string", "bvh", "", "how a light is chosen for shadow rays: bvh, power or uniform");
-pub(in crate::photon) const WAVELENGTHS: ParameterSpec = spec(
-    "wavelengths",
-    "string",
-    "hero",
-    "",
-    "wavelengths of a path: hero (four), single, or bands (linear sRGB, as renderers without spectra)",
-);
 pub(in crate::photon) const MAX_PHOTON_DEPTH: ParameterSpec =
     spec("maxphotondepth", "integer", "64", "", "most scattering events of a photon");
 
@@ -131,33 +124,36 @@ const OWN_PARAMETERS: [ParameterSpec; 15] = [
     SHARP_ALPHA_SPEC,
     spec("layers", "bool", "true", "", "layers direct, specular, caustic and indirect"),
     LIGHT_SAMPLER,
-    WAVELENGTHS,
+    WavelengthMode::PARAMETER,
 ];
 
-const N_PARAMETERS: usize =
-    OWN_PARAMETERS.len() + PhotonSettings::PARAMETERS.len() + DensityEstimate::PARAMETERS.len();
+/// Number of parameters of a method with maps that has so many of its own.
+pub(in crate::photon) const fn n_parameters(n_own: usize) -> usize {
+    n_own + PhotonSettings::PARAMETERS.len() + DensityEstimate::PARAMETERS.len()
+}
 
-/// All tables.
-const ALL_PARAMETERS: [ParameterSpec; N_PARAMETERS] = {
-    let mut all = [MAX_PHOTON_DEPTH; N_PARAMETERS];
-    let (own, photons) = (OWN_PARAMETERS.len(), PhotonSettings::PARAMETERS.len());
+/// The own parameters of a method with maps, then those of photons and of estimates.
+pub(in crate::photon) const fn with_shared<const N: usize>(own: &[ParameterSpec]) -> [ParameterSpec; N] {
+    let mut all = [MAX_PHOTON_DEPTH; N];
+    let (n_own, n_photons) = (own.len(), PhotonSettings::PARAMETERS.len());
     let mut i = 0;
-    while i < N_PARAMETERS {
-        all[i] = if i < own {
-            OWN_PARAMETERS[i]
-        } else if i < own + photons {
-            PhotonSettings::PARAMETERS[i - own]
+    while i < N {
+        all[i] = if i < n_own {
+            own[i]
+        } else if i < n_own + n_photons {
+            PhotonSettings::PARAMETERS[i - n_own]
         } else {
-            DensityEstimate::PARAMETERS[i - own - photons]
+            DensityEstimate::PARAMETERS[i - n_own - n_photons]
         };
         i += 1;
     }
     all
-};
+}
 
 impl MappingSettings {
     /// Parameters in scene files.
-    pub const PARAMETERS: &'static [ParameterSpec] = &ALL_PARAMETERS;
+    pub const PARAMETERS: &'static [ParameterSpec] =
+        &with_shared::<{ n_parameters(OWN_PARAMETERS.len()) }>(&OWN_PARAMETERS);
 
     /// Reads the parameters of an integrator entity.
     pub fn from_parameters(p: &mut Parameters<'_, '_>) -> Self {

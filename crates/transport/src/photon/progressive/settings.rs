@@ -141,13 +141,7 @@ impl ProgressiveSettings {
             unit: "",
             doc: "width of microfacets below which glossy events count as S in path expressions without G, else as D",
         },
-        ParameterSpec {
-            name: "wavelengths",
-            kind: "string",
-            default: "hero",
-            unit: "",
-            doc: "wavelengths of a path: hero (four), single, or bands (linear sRGB, as renderers without spectra)",
-        },
+        WavelengthMode::PARAMETER,
         ParameterSpec {
             name: "wavelengthgroups",
             kind: "integer",
@@ -188,12 +182,7 @@ impl ProgressiveSettings {
         let receiver_alpha = p.float("receiveralpha", default.receiver_alpha);
         let sharp_alpha = p.float("sharpalpha", default.sharp_alpha);
         let pattern = PhotonSettings::read_pattern(p);
-        let modes = [
-            ("hero", WavelengthMode::Hero),
-            ("single", WavelengthMode::Single),
-            ("bands", WavelengthMode::Bands),
-        ];
-        let wavelengths = p.choice("wavelengths", "hero", &modes);
+        let wavelengths = p.choice("wavelengths", "hero", WavelengthMode::CHOICES);
         let n_groups = p.count_within("wavelengthgroups", default.n_groups, 1, MAX_GROUPS);
         let seed = p.integer("seed", 0) as u64;
         // Read where the scene is built.
