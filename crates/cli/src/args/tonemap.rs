@@ -1,0 +1,81 @@
+//! Arguments of `tonemap`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use etendue::image::tonemap::Operator;
+use etendue::spectrum::chromaticity_of_temperature;
+
+use super::values::parse_positive;
+
+/// Arguments of `tonemap`.
+#[derive(Args, Debug)]
+pub(crate) struct TonemapArguments {
+    /// Image with linear radiance
+    pub(crate) image: PathBuf,
+    /// Output; may repeat
+    #[arg(short, long = "output", value_name = "OUT", required = true)]
+    pub(crate) outputs: Vec<PathBuf>,
+    /// Operator, with its parameters: NAME[:key=value,...]; `etendue list tonemappers` shows them
+    #[arg(long, default_value = "clamp", value_parser = parse_operator)]
+    pub(crate) operator: Operator,
+    /// Exposure in stops before the curve, or `auto`: middle grey for the log-average luminance [default: auto for filmic, aces
+    /// and agx, else 0]
+    #[arg(long, value_name = "EV|auto", value_parser = parse_exposure, allow_negative_numbers = true)]
+    pub(crate) exposure: Option<Exposure>,
+    /// Key of the photographic operators: what the log-average luminance becomes
+    #[arg(long, value_parser = parse_positive)]
+    pub(crate) key: Option<f64>,
+    /// Scaled luminance that becomes white, of the global photographic operator [default: infinite]
+    #[arg(long, value_parser = parse_positive)]
+    pub(crate) white: Option<f64>,
+    /// Take this colour of light for white: a colour temperature in kelvin, or a chromaticity x,y
+    #[arg(long, value_name = "KELVIN|X,Y", value_parser = parse_white)]
+    pub(crate) white_balance: Option<[f32; 2]>,
+    /// Hide the steps of 8-bit outputs in noise
+    #[arg(long)]
+    pub(crate) dither: bool,
+    /// Write inks: channels C, M, Y and K of an .exr, of the encoded colour, without a profile
+    #[arg(long, conflicts_with = "dither")]
+    pub(crate) cmyk: bool,
+}
+
+/// How bright a picture is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Exposure {
+    /// By so many stops.
+    Stops(f32),
+    /// By what the picture needs.
+    Automatic,
+}
+
+fn parse_operator(text: &str) -> Result<Operator, String> {
+    let (name, parameters) = text.split_once(':').unwrap_or((text, ""));
+    let pairs = parameters.split(',').filter(|pair| !pair.is_empty());
+    let pairs = pairs.map(|pair| {
+        let (key, value) = pair.split_once('=').ok_or(format!("'{pair}' is not of the form key=value"))?;
+        let value: f32 = value.parse().map_err(|_| format!("'{value}' is not a number"))?;
+        Ok((key, value))
+    });
+    Operator::named(name, &pairs.collect::<Result<Vec<_>, String>>()?)
+}
+
+fn parse_exposure(text: &str) -> Result<Exposure, String> {
+    match text.parse::<f32>() {
+        _ if text == "auto" => Ok(Exposure::Automatic),
+        Ok(stops) if stops.abs() <= 100.0 => Ok(Exposure::Stops(stops)),
+        _ => Err("stops between -100 and 100, or 'auto', are needed".to_owned()),
+    }
+}
+
+/// A chromaticity from two numbers or a colour temperature.
+fn parse_white(text: &str) -> Result<[f32; 2], String> {
+    let error =
+        || "a colour temperature from 1000 to 40000 kelvin or a chromaticity x,y is needed".to_owned();
+    let numbers: Vec<f32> = text.split(',').map(str::parse).collect::<Result<_, _>>().map_err(|_| error())?;
+    match numbers[..] {
+        [kelvin] if (1000.0..=40_000.0).contains(&kelvin) => Ok(chromaticity_of_temperature(kelvin)),
+        [x, y] if x > 0.0 && y > 0.0 && x + y < 1.0 => Ok([x, y]),
+        _ => Err(error()),
+    }
+}
