@@ -9,6 +9,7 @@ mod adaptive;
 mod ambient_occlusion;
 mod bands;
 mod branching;
+mod classes;
 mod controls;
 mod convergence;
 mod degenerate;
