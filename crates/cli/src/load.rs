@@ -4,11 +4,13 @@ use std::path::Path;
 
 use etendue::io::checkpoint::hash_bytes;
 use etendue::io::{load_assets, read_scene};
+use etendue::scene::assets::INTEGRATOR_FILES;
 use etendue::scene::diagnostics::nearest_name;
 use etendue::scene::document::{Document, Entity, Parameter, Value};
 use etendue::scene::parameters::ParameterSpec;
 use etendue::scene::{Diagnostics, Scene};
 use etendue::transport::lpe::PathExpressions;
+use etendue::transport::photon::mapping::check_map_files;
 use etendue::transport::{INTEGRATORS, Integrator, method};
 
 use crate::failure::{Failure, Result};
@@ -48,12 +50,12 @@ pub(crate) fn load(
     quiet: bool,
 ) -> Result<LoadedScene> {
     let (mut document, mut diagnostics) = read_scene(path);
+    apply(overrides, &mut document);
     // A document with syntax errors still tells which of its files are missing.
     let (assets, problems) = load_assets(&document);
     diagnostics.append(problems);
     // The scene takes meshes from their last owner, others it must copy.
     document.embedded.clear();
-    apply(overrides, &mut document);
     let (integrator, mut method_problems) = match &document.integrator {
         Some(entity) => method(entity, expressions),
         None => method(&Entity::new("volpath"), expressions),
@@ -66,6 +68,9 @@ pub(crate) fn load(
     }
     diagnostics.append(problems);
     diagnostics.append(method_problems);
+    if let Some(scene) = scene.as_ref().filter(|_| !diagnostics.has_errors()) {
+        diagnostics.append(check_map_files(scene));
+    }
     report::diagnostics(&diagnostics, &document.sources, quiet);
     match (scene, integrator) {
         (Some(scene), Some(integrator)) if !diagnostics.has_errors() => {
@@ -120,7 +125,23 @@ pub(crate) fn integrator_entity(text: &str) -> Result<Entity> {
         };
         entity.parameters.push(Parameter::new(key, value));
     }
+    find_files_from_here(&mut entity)?;
     Ok(entity)
+}
+
+/// Files that are named on the command line are looked for from the current folder, not from that of the scene.
+fn find_files_from_here(entity: &mut Entity) -> Result<()> {
+    for Parameter { name, value, .. } in &mut entity.parameters {
+        let Value::Strings(files) = value else { continue };
+        if INTEGRATOR_FILES.contains(&(entity.type_name.as_str(), name.as_str())) {
+            for file in files.iter_mut().filter(|file| !file.is_empty()) {
+                let path = std::path::absolute(&*file)
+                    .map_err(|error| Failure::Usage(format!("{file}: {error}")))?;
+                *file = path.to_string_lossy().into_owned();
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The value of a parameter of the method `name`, of the type that its table states.

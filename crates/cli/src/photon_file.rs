@@ -7,6 +7,8 @@ use etendue::io::images::write_atomically;
 use etendue::io::read_file;
 use etendue::scene::Scene;
 use etendue::transport::lpe::Event;
+use etendue::transport::photon::map::PhotonMapError;
+use etendue::transport::photon::mapping::MapFile;
 use etendue::transport::photon::{PhotonMap, Trail};
 use serde_json::{Value, json};
 
@@ -30,16 +32,33 @@ pub(crate) fn write(path: &Path, scene: &Scene, arguments: &PhotonsArguments) ->
         PhotonKindArgument::Caustic => trail.is_caustic(),
         PhotonKindArgument::Indirect => !trail.is_empty() && !trail.is_caustic(),
     };
-    let bytes = PhotonMap::trace(scene, arguments.photons, arguments.seed, keeps).to_bytes();
-    write_atomically(path, |file| file.write_all(&bytes))
+    write_bytes(path, &PhotonMap::trace(scene, arguments.photons, arguments.seed, keeps).to_bytes())
+}
+
+/// Writes a file of a map.
+pub(crate) fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_atomically(path, |file| file.write_all(bytes))
         .map_err(|error| Failure::Running(format!("cannot write {}: {error}", path.display())))
 }
 
 /// What a map holds.
 pub(crate) fn describe(path: &Path) -> Result<Value> {
     let bytes = read_file(path).map_err(|error| Failure::Usage(error.to_string()))?;
-    let map = PhotonMap::from_bytes(&bytes)
-        .map_err(|error| Failure::Usage(format!("{}: {error}", path.display())))?;
+    let damaged = |error| Failure::Usage(format!("{}: {error}", path.display()));
+    match MapFile::from_bytes(&bytes) {
+        Err(PhotonMapError::NotOfMethod) => {
+            Ok(describe_map(&PhotonMap::from_bytes(&bytes).map_err(damaged)?))
+        }
+        Err(error) => Err(damaged(error)),
+        Ok(file) => {
+            let mut facts = describe_map(file.map());
+            facts["map"] = json!({ "content": file.content().name(), "sharpalpha": file.sharp_alpha() });
+            Ok(facts)
+        }
+    }
+}
+
+fn describe_map(map: &PhotonMap) -> Value {
     let mut counts = vec![0_u64; map.trails().len() + 1];
     for photon in map.photons() {
         counts[photon.trail_number().min(map.trails().len())] += 1;
@@ -61,14 +80,14 @@ pub(crate) fn describe(path: &Path) -> Result<Value> {
     let min = positions().reduce(etendue::math::Point3::min);
     let max = positions().reduce(etendue::math::Point3::max);
     let corner = |p: Option<etendue::math::Point3>| p.map_or(Value::Null, |p| json!([p.x, p.y, p.z]));
-    Ok(json!({
+    json!({
         "photons": { "emitted": map.n_emitted(), "stored": map.len(), "memory_bytes": map.memory_bytes() },
         "mean_power_y": map.mean_power(),
         "bounds": { "min": corner(min), "max": corner(max) },
         "kinds_of_trails": n_kinds,
         "photons_by_trail": most,
         "radius_of_50_photons": map.radius_from_density(50, 0.1),
-    }))
+    })
 }
 
 /// The letters of a trail from the light on.

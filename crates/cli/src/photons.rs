@@ -7,8 +7,9 @@ use etendue::io::images::{write_atomically, write_image};
 use etendue::lab::photons::{PhotonCloud, PhotonKind, PictureSettings, SeenPhoton};
 use etendue::math::{Point3, Vector3};
 use etendue::scene::Scene;
+use etendue::transport::photon::mapping::{Content, MapFile};
 
-use crate::args::{PhotonKindArgument, PhotonsArguments};
+use crate::args::{PhotonKindArgument, PhotonMapArgument, PhotonsArguments};
 use crate::failure::{Failure, Result};
 use crate::load::{self, Overrides};
 use crate::{list, outputs, photon_file, report};
@@ -24,10 +25,14 @@ pub(crate) fn run(arguments: &PhotonsArguments) -> Result<()> {
         Some(None) => return Err(Failure::Usage("--normal: a normal has a length".to_owned())),
         normal => normal.flatten(),
     };
-    let overrides = Overrides { resolution: arguments.resolution, ..Overrides::default() };
+    let integrator = arguments.integrator.as_deref().map(load::integrator_entity).transpose()?;
+    let overrides = Overrides { resolution: arguments.resolution, integrator, ..Overrides::default() };
     let scene =
         load::load(&arguments.scene, &overrides, etendue::transport::lpe::PathExpressions::default(), false)?
             .scene;
+    if let Some(map) = arguments.map {
+        return write_maps(arguments, &scene, map);
+    }
     let kind = match arguments.kind {
         PhotonKindArgument::All => PhotonKind::All,
         PhotonKindArgument::Direct => PhotonKind::Direct,
@@ -53,12 +58,36 @@ pub(crate) fn run(arguments: &PhotonsArguments) -> Result<()> {
     write_all(arguments, &scene, &cloud, Some(n))
 }
 
+/// The map of a method, which its files hold.
+fn write_maps(arguments: &PhotonsArguments, scene: &Scene, map: PhotonMapArgument) -> Result<()> {
+    let content = match map {
+        PhotonMapArgument::Global => Content::All,
+        PhotonMapArgument::Scattered => Content::Scattered,
+        PhotonMapArgument::Caustic => Content::Caustic,
+    };
+    let file = MapFile::trace(scene, content).map_err(Failure::Usage)?;
+    report::note(&format!("{} photons emitted, {} stored", file.map().n_emitted(), file.map().len()));
+    if file.map().is_empty() {
+        report::warning("no photon is of that map: it is empty");
+    }
+    let bytes = file.to_bytes();
+    for path in &arguments.outputs {
+        photon_file::write_bytes(path, &bytes)?;
+        report::note(&path.display().to_string());
+    }
+    Ok(())
+}
+
 fn check_outputs(arguments: &PhotonsArguments) -> Result<()> {
     for path in &arguments.outputs {
         let extension = outputs::extension(path);
         let is_directions = ["svg", "csv"].contains(&extension.as_str());
         if is_directions && arguments.at.is_none() {
             let message = format!("{}: directions belong to a point: add --at X,Y,Z", path.display());
+            return Err(Failure::Usage(message));
+        }
+        if arguments.map.is_some() && !photon_file::is_map(path) {
+            let message = format!("{}: --map writes .{}", path.display(), photon_file::EXTENSION);
             return Err(Failure::Usage(message));
         }
         if photon_file::is_map(path) && arguments.at.is_some() {

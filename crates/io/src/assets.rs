@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use etendue_image::Texels;
-use etendue_scene::assets::Contours;
+use etendue_scene::assets::{Contours, INTEGRATOR_FILES};
 use etendue_scene::bsdf::measured::MeasuredBrdf;
 use etendue_scene::bsdf::tabulated::BrdfGrid;
 use etendue_scene::build::{MESH_FILE_PARAMETERS, MESH_FILES};
@@ -41,6 +41,7 @@ enum Kind {
     Lens,
     Luminaire,
     Contours,
+    OfIntegrator,
 }
 
 /// Files by kind and name, with the first parameter that names each.
@@ -57,6 +58,7 @@ enum Loaded {
     Lens(LensPrescription),
     Luminaire(Photometry),
     Contours(Contours),
+    OfIntegrator(Arc<[u8]>),
 }
 
 /// Reads all files that parameters of the document name; what cannot be read is an error at the parameter.
@@ -64,7 +66,7 @@ enum Loaded {
 /// Known are the meshes of `plymesh` and `fractal`, contours of `revolution`, the images of `heightfield`,
 /// the images of `imagemap` textures, of lights and of normal maps, measured
 /// spectra, the tables of `tabulated`, the measurements of `measured`, the lenses of `realistic` and the luminaires
-/// of `ies` and of surfaces that emit.
+/// of `ies` and of surfaces that emit, and the photon maps of integrators.
 /// File names are relative to [`Document::base_directory`]; names in [`Document::embedded`] stand for what the document
 /// brings along.
 #[must_use]
@@ -105,6 +107,9 @@ pub fn load_assets(document: &Document) -> (Assets, Diagnostics) {
             }
             Ok(Loaded::Contours(contours)) => {
                 assets.contours.insert(name, contours);
+            }
+            Ok(Loaded::OfIntegrator(bytes)) => {
+                assets.of_integrator.insert(name, bytes);
             }
             Err(message) => {
                 let error = diagnostics.error(span, message);
@@ -167,6 +172,7 @@ fn decode(kind: Kind, bytes: &[u8]) -> Result<Loaded, String> {
         Kind::Spectrum | Kind::Image => {
             read_spd(bytes).map(Loaded::Spectrum).map_err(|error| error.to_string())
         }
+        Kind::OfIntegrator => Ok(Loaded::OfIntegrator(bytes.into())),
         Kind::Luminaire => read_ies(bytes).map(Loaded::Luminaire).map_err(|error| error.to_string()),
     }
 }
@@ -215,6 +221,11 @@ fn wanted_files(document: &Document) -> Wanted {
     if let Some(camera) = camera.filter(|camera| camera.type_name == "realistic") {
         add(&mut wanted, Kind::Lens, camera, "lensfile");
         add_if(&mut wanted, Kind::Image, camera, "aperture", |name| name.contains('.'));
+    }
+    if let Some(integrator) = &document.integrator {
+        for (_, parameter) in INTEGRATOR_FILES.iter().filter(|(name, _)| *name == integrator.type_name) {
+            add(&mut wanted, Kind::OfIntegrator, integrator, parameter);
+        }
     }
     let media = document.media.iter().map(|medium| &medium.entity);
     for entity in media.chain(camera).chain(&document.film) {

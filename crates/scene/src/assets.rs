@@ -62,6 +62,10 @@ pub struct LoadedMesh {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contours(pub Vec<(String, Vec<Point2>)>);
 
+/// Parameters of integrators that name files: the integrator's name, then the parameter's.
+pub const INTEGRATOR_FILES: &[(&str, &str)] =
+    &[("photonmap", "globalmap"), ("photonmap", "causticmap"), ("photons", "map")];
+
 /// Everything that was loaded for a document.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
@@ -81,6 +85,8 @@ pub struct Assets {
     pub luminaires: HashMap<String, Arc<Photometry>>,
     /// Contours of surfaces of revolution by file name.
     pub contours: HashMap<String, Contours>,
+    /// Files of the method, as they are, by file name: methods know what they hold.
+    pub of_integrator: HashMap<String, Arc<[u8]>>,
     /// Names of files that could not be read. Whoever tried has said why, so that the scene builder need not.
     pub failed: HashSet<String>,
 }

@@ -1,5 +1,8 @@
 //! The immutable scene: everything that a method of light transport may ask.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use etendue_geometry::{Geometry, Hit, Reference, SurfaceDerivatives, SurfacePoint};
 use etendue_math::{Bounds3, Point3, Ray, SamplerSettings, Vector3, hash64, offset_ray_origin};
 use etendue_spectrum::{Sampled, Wavelengths};
@@ -123,6 +126,8 @@ pub struct Scene {
     pub sampler: SamplerSettings,
     /// The method that the document asks for, with its parameters.
     pub integrator: Entity,
+    /// Contents of the files that its parameters name, by file name.
+    pub integrator_files: HashMap<String, Arc<[u8]>>,
     /// What artists have switched off; `None` for nothing.
     pub controls: Option<Box<Controls>>,
     /// True if some shape has an alpha texture.

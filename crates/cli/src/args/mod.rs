@@ -17,7 +17,7 @@ pub(crate) use brdf::BrdfArguments;
 pub(crate) use compare::{CompareArguments, MapArgument};
 pub(crate) use exposures::{FuseArguments, HdrArguments, ResponseArgument};
 pub(crate) use merge::MergeArguments;
-pub(crate) use photons::{PhotonKindArgument, PhotonsArguments};
+pub(crate) use photons::{PhotonKindArgument, PhotonMapArgument, PhotonsArguments};
 pub(crate) use render::{RenderArguments, WavelengthArgument};
 pub(crate) use scene::{ConvertArguments, InfoArguments, ListArguments, ListKind, SceneArguments};
 pub(crate) use study::{BenchArguments, StudyArguments, StudyName};

@@ -14,6 +14,12 @@ pub(crate) struct PhotonsArguments {
     /// Output: an image shows photons as dots, .ply holds them as points, .photons is a photon map; with --at, .svg and .csv tell where they come from; may repeat
     #[arg(short, long = "output", value_name = "OUT")]
     pub(crate) outputs: Vec<PathBuf>,
+    /// Write the map that `photonmap` or `photons` makes of the scene, for their parameters globalmap, causticmap and map
+    #[arg(long, value_name = "MAP", value_enum, conflicts_with_all = ["photons", "kind", "seed", "at"])]
+    pub(crate) map: Option<PhotonMapArgument>,
+    /// Integrator in place of the scene's, with parameters, whose map is meant
+    #[arg(long, value_name = "NAME[:key=value,...]", requires = "map")]
+    pub(crate) integrator: Option<String>,
     /// Photons that leave the lights
     #[arg(long, value_name = "N", default_value = "100000", value_parser = clap::value_parser!(u64).range(1..=10_000_000), allow_negative_numbers = true)]
     pub(crate) photons: u64,
@@ -41,6 +47,17 @@ pub(crate) struct PhotonsArguments {
     /// Resolution in place of the film's
     #[arg(long, value_name = "WxH", value_parser = parse_resolution, allow_hyphen_values = true)]
     pub(crate) resolution: Option<[i32; 2]>,
+}
+
+/// Which map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PhotonMapArgument {
+    /// All photons
+    Global,
+    /// Those that a surface has scattered: of photons:show=shadowrays
+    Scattered,
+    /// Those that came through mirrors and glass alone
+    Caustic,
 }
 
 /// Which photons.

@@ -68,6 +68,7 @@ impl Scene {
         let Placed { document, moving } = emitters::place_emitters(document, &assets);
         let document = document.as_ref();
         let loaded = std::mem::take(&mut assets.meshes);
+        let integrator_files = std::mem::take(&mut assets.of_integrator);
         let mut builder = Builder {
             document,
             context: BuildContext::new(&assets),
@@ -122,6 +123,7 @@ impl Scene {
             filter,
             sampler,
             integrator: document.integrator.clone().unwrap_or_else(|| Entity::new("volpath")),
+            integrator_files,
             controls: controls.finish(),
             has_alpha,
             has_passable,

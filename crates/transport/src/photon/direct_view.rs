@@ -13,9 +13,11 @@ use etendue_scene::{Film, Scene};
 use super::estimate::DensityEstimate;
 use super::mapping::{
     Content, EyeMethod, EyePass, LIGHT_SAMPLER, LitMap, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS,
-    MapNames, MapPlan, Probe, SHARP_ALPHA_SPEC, Seen, describe_map, length, n_parameters, spec, with_shared,
+    MapNames, MapPlan, Probe, SHARP_ALPHA_SPEC, Seen, describe_map, file, length, n_parameters, obtain, spec,
+    with_shared,
 };
-use super::{PhotonEmitter, PhotonSettings, PhotonWalk, Target};
+use super::settings::WalkLimits;
+use super::{PhotonSettings, Target};
 use crate::integrator::{Control, Integrator, PassEnd, Passes, ReportEntry};
 use crate::lpe::{PathExpressions, SHARP_ALPHA};
 use crate::path::camera_pass::{CameraPass, WavelengthMode};
@@ -33,7 +35,7 @@ pub enum Show {
 }
 
 /// Settings.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DirectViewSettings {
     /// Photons to store, about.
     pub n_photons: u32,
@@ -41,6 +43,8 @@ pub struct DirectViewSettings {
     pub k: u32,
     /// The greatest radius of an estimate in metres; `None` for one that fits the density of photons.
     pub max_radius: Option<f32>,
+    /// File of the map, as it is named; `None` to make it.
+    pub file: Option<String>,
     /// What is shown.
     pub show: Show,
     /// Most scattering events of a walk from the camera.
@@ -63,6 +67,7 @@ impl Default for DirectViewSettings {
             n_photons: 500_000,
             k: 200,
             max_radius: None,
+            file: None,
             show: Show::default(),
             max_depth: 32,
             max_photon_depth: 64,
@@ -74,10 +79,17 @@ impl Default for DirectViewSettings {
     }
 }
 
-const OWN_PARAMETERS: [ParameterSpec; 9] = [
+const OWN_PARAMETERS: [ParameterSpec; 10] = [
     spec("photons", "integer", "500000", "", "photons to store, about"),
     spec("nearest", "integer", "200", "", "photons of an estimate"),
     spec("radius", "float", "by density", "m", "greatest radius of an estimate"),
+    spec(
+        "map",
+        "string",
+        "none",
+        "",
+        "file of the map, written by `etendue photons --map`, in place of tracing it",
+    ),
     spec(
         "show",
         "string",
@@ -107,6 +119,7 @@ impl DirectViewSettings {
             n_photons: p.count_within("photons", default.n_photons, 0, MOST_PHOTONS),
             k: p.count_within("nearest", default.k, 1, MOST_NEIGHBOURS),
             max_radius: length(p, "radius"),
+            file: file(p, "map"),
             show: p.choice("show", "all", &shows),
             max_depth: p.count("maxdepth", default.max_depth),
             max_photon_depth: p.count("maxphotondepth", default.max_photon_depth),
@@ -114,6 +127,33 @@ impl DirectViewSettings {
             photons: PhotonSettings::from_parameters(p),
             estimate: DensityEstimate::from_parameters(p),
             wavelengths: p.choice("wavelengths", "hero", WavelengthMode::CHOICES),
+        }
+    }
+
+    /// The map of a scene.
+    #[must_use]
+    pub(crate) fn plan(&self, scene: &Scene) -> MapPlan {
+        let (content, target) = match self.show {
+            Show::All => (Content::All, Target::Anything),
+            Show::ShadowRays => (Content::Scattered, Target::Anything),
+            Show::Caustics => (Content::Caustic, Target::SharpShapes),
+        };
+        let limits = WalkLimits {
+            max_depth: self.max_photon_depth,
+            sharp_alpha: self.sharp_alpha,
+            wavelengths: self.wavelengths,
+        };
+        MapPlan {
+            n_photons: u64::from(self.n_photons),
+            content,
+            emission: self.photons.towards(target, self.sharp_alpha),
+            walk: self.photons.walk(scene, 0, limits),
+            k: self.k as usize,
+            max_radius: self.max_radius,
+            estimate: self.estimate,
+            place_step: 0,
+            parameter: "map",
+            file: self.file.clone(),
         }
     }
 }
@@ -144,7 +184,9 @@ impl Integrator for DirectView {
     fn run_pass(&mut self, scene: &Scene, pass: u64, film: &mut Film, control: &Control<'_>) -> PassEnd {
         let settings = &self.settings;
         if self.map.is_none() {
-            self.map = fill(scene, settings, control).map(|map| {
+            let plan = settings.plan(scene);
+            self.map = obtain(scene, &plan, control).map(|(traced, _)| {
+                let map = LitMap::new(scene, &plan, traced.map);
                 let probe = Probe::new(scene, &map, settings.sharp_alpha);
                 (map, probe)
             });
@@ -167,6 +209,7 @@ impl Integrator for DirectView {
                 Show::Caustics => Seen::ByMapAlone,
             },
             accurate_distance: 0.0,
+            accurate_share: 0.0,
             n_gather: 1,
             max_depth: settings.max_depth,
             sharp_alpha: settings.sharp_alpha,
@@ -203,35 +246,3 @@ const NAMES: MapNames = MapNames {
     radius_parameter: "radius",
     expects_everywhere: true,
 };
-
-/// `None` if the render was cancelled meanwhile.
-fn fill(scene: &Scene, settings: &DirectViewSettings, control: &Control<'_>) -> Option<LitMap> {
-    let walk = PhotonWalk {
-        max_depth: settings.max_photon_depth,
-        sharp_alpha: settings.sharp_alpha,
-        wavelengths: settings.wavelengths,
-        pattern: settings.photons.pattern,
-        absorption: settings.photons.absorption,
-        sampler: scene.sampler,
-        stream: 0,
-    };
-    let plan = MapPlan {
-        n_photons: u64::from(settings.n_photons),
-        content: match settings.show {
-            Show::All => Content::All,
-            Show::ShadowRays => Content::Scattered,
-            Show::Caustics => Content::Caustic,
-        },
-        walk,
-        k: settings.k as usize,
-        max_radius: settings.max_radius,
-        estimate: settings.estimate,
-        place_step: 0,
-    };
-    let target = match settings.show {
-        Show::All | Show::ShadowRays => Target::Anything,
-        Show::Caustics => Target::SharpShapes,
-    };
-    let aim = settings.photons.towards(target, settings.sharp_alpha);
-    LitMap::fill(scene, &PhotonEmitter::aimed(scene, &aim), &plan, control).map(|(map, _)| map)
-}

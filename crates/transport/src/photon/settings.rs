@@ -1,8 +1,21 @@
 //! Parameters of scene files that say how photons leave lights and walk, for every method that follows photons.
 
+use etendue_scene::Scene;
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
-use super::{Absorption, EmissionSettings, MapScheme, PhotonPattern, Target};
+use super::{Absorption, EmissionSettings, MapScheme, PhotonPattern, PhotonWalk, Target};
+use crate::path::camera_pass::WavelengthMode;
+
+/// What else a method says of the walk of its photons.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkLimits {
+    /// Most scattering events.
+    pub max_depth: u32,
+    /// Glossy events narrower than this are sharp.
+    pub sharp_alpha: f32,
+    /// Choice of wavelengths.
+    pub wavelengths: WavelengthMode,
+}
 
 /// How photons leave and walk, as a scene asks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,6 +88,20 @@ impl PhotonSettings {
     /// Reads `photonpattern`.
     pub fn read_pattern(p: &mut Parameters<'_, '_>) -> PhotonPattern {
         p.choice("photonpattern", "qmc", &PhotonPattern::NAMES)
+    }
+
+    /// How photons walk through a scene.
+    #[must_use]
+    pub const fn walk(&self, scene: &Scene, stream: u32, limits: WalkLimits) -> PhotonWalk {
+        PhotonWalk {
+            max_depth: limits.max_depth,
+            sharp_alpha: limits.sharp_alpha,
+            wavelengths: limits.wavelengths,
+            pattern: self.pattern,
+            absorption: self.absorption,
+            sampler: scene.sampler,
+            stream,
+        }
     }
 
     /// What photons for a target are sent by.

@@ -53,6 +53,8 @@ pub enum PhotonMapError {
     Content,
     /// The photons are not in the order of a tree, or their positions not finite.
     Order,
+    /// It is a map that no method made, with less than methods need.
+    NotOfMethod,
 }
 
 impl fmt::Display for PhotonMapError {
@@ -73,6 +75,7 @@ impl fmt::Display for PhotonMapError {
             Self::Order => {
                 f.write_str("the photon map is damaged: its photons are not finite or not in order")
             }
+            Self::NotOfMethod => f.write_str("it was not written for a method, but to be looked at"),
         }
     }
 }
@@ -194,7 +197,7 @@ fn read_trails(bytes: &[u8]) -> Option<Vec<Trail>> {
 }
 
 /// A hash of bytes, the same on every machine.
-fn hash(bytes: &[u8]) -> u64 {
+pub(in crate::photon) fn hash(bytes: &[u8]) -> u64 {
     let (words, rest) = bytes.as_chunks::<8>();
     let mut tail = [0; 8];
     tail[..rest.len()].copy_from_slice(rest);
@@ -203,20 +206,20 @@ fn hash(bytes: &[u8]) -> u64 {
 }
 
 /// Bytes that are read one number after the other; `None` beyond their end.
-struct Reader<'a>(&'a [u8]);
+pub(in crate::photon) struct Reader<'a>(pub(in crate::photon) &'a [u8]);
 
 impl Reader<'_> {
-    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+    pub(in crate::photon) fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
         let (array, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
         Some(*array)
     }
 
-    fn u32(&mut self) -> Option<u32> {
+    pub(in crate::photon) fn u32(&mut self) -> Option<u32> {
         self.array().map(u32::from_le_bytes)
     }
 
-    fn u64(&mut self) -> Option<u64> {
+    pub(in crate::photon) fn u64(&mut self) -> Option<u64> {
         self.array().map(u64::from_le_bytes)
     }
 }

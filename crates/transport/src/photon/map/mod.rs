@@ -11,7 +11,7 @@
 //! Photons are the same, bit for bit and in the same order, for any number of threads.
 
 mod builder;
-mod bytes;
+pub(in crate::photon) mod bytes;
 mod direction;
 mod power;
 mod radius;

@@ -66,6 +66,8 @@ pub(crate) struct EyeMethod<'m> {
     pub(crate) seen: Seen,
     /// Rays that gather are followed accurately at surfaces nearer than this, in metres.
     pub(crate) accurate_distance: f32,
+    /// A surface that is seen by scattering is treated approximately where its share of the pixel's light is less.
+    pub(crate) accurate_share: f32,
     /// Rays that gather from each surface that is seen directly.
     pub(crate) n_gather: u32,
     /// Most scattering events of the walk.
@@ -103,6 +105,8 @@ struct EyeWalk<'m> {
     method: &'m EyeMethod<'m>,
     ray: Ray,
     beta: Sampled,
+    /// Bound of the share of the pixel that what is found here has: products of reflectances, whatever was chosen at random.
+    share: f32,
     /// Product of squared relative indices, and of the number of rays that gather.
     roulette_scale: f32,
     /// Rays that leave the surface where the walk is for each of its shadow rays.
@@ -134,6 +138,7 @@ pub(crate) fn follow(
         method,
         ray: path.ray,
         beta: Sampled::ONE,
+        share: 1.0,
         roulette_scale: 1.0,
         walks_per_light_sample: 1.0,
         depth: 0,
@@ -159,11 +164,9 @@ impl EyeWalk<'_> {
         while let Some((surface, bsdf)) = self.arrive(tracer, path) {
             path.sampler.start_vertex();
             let wide = wide_lobes(&bsdf, self.method.sharp_alpha);
-            let is_accurate = if self.n_wide == 0 {
-                self.method.seen == Seen::Accurately
-            } else {
-                self.distance < self.method.accurate_distance
-            };
+            let is_near = self.n_wide == 0 || self.distance < self.method.accurate_distance;
+            let is_accurate =
+                self.method.seen == Seen::Accurately && is_near && self.share >= self.method.accurate_share;
             let gathers = is_accurate && self.n_wide == 0 && self.method.n_gather > 1 && !wide.is_empty();
             self.walks_per_light_sample = if gathers { self.method.n_gather as f32 } else { 1.0 };
             let admitted = self.admitted_lobes(tracer.scene, &surface, &bsdf);
@@ -314,6 +317,7 @@ impl EyeWalk<'_> {
         }
         self.medium = scene.medium_towards(surface, sample.wi, self.medium);
         self.beta *= sample.weight;
+        self.share *= sample.weight.max_value() * if sample.is_specular() { sample.pmf } else { 1.0 };
         self.roulette_scale *= sample.eta * sample.eta;
         self.depth += 1;
         self.ray = surface.spawn_ray(sample.wi);

@@ -8,7 +8,10 @@
 //! The maps are functions of scene, seed and settings alone: they are made before the first pass, and passes are independent.
 
 mod eye_walk;
+mod fill;
 mod lit_map;
+mod map_file;
+mod plan;
 mod precomputed;
 mod probe;
 mod settings;
@@ -19,28 +22,28 @@ use etendue_scene::film::TileSamples;
 use etendue_scene::{Film, Scene};
 use etendue_spectrum::Sampled;
 
+pub use map_file::{MapFile, check_map_files};
+pub use plan::Content;
 pub use settings::MappingSettings;
 
 pub(crate) use eye_walk::TERM_NAMES;
 
 pub(super) use eye_walk::{EyeMethod, Seen, follow};
-pub(super) use lit_map::{Content, LitMap, MapPlan};
+pub(super) use lit_map::LitMap;
+pub(super) use map_file::obtain;
+pub(super) use plan::MapPlan;
 pub(super) use probe::{MapNames, Probe, describe_map};
 pub(super) use settings::{
-    LIGHT_SAMPLER, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS, SHARP_ALPHA_SPEC, length, n_parameters,
-    spec, with_shared,
+    LIGHT_SAMPLER, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS, SHARP_ALPHA_SPEC, file, length,
+    n_parameters, spec, with_shared,
 };
 
+use self::fill::Traced;
 use self::precomputed::Precomputed;
 use crate::integrator::{Control, Integrator, PassEnd, Passes, ReportEntry};
 use crate::lpe::PathExpressions;
 use crate::path::camera_pass::{CameraPass, CameraPath, Follow, FollowedPath, Tracer};
 use crate::photon::estimate::EstimateScratch;
-use crate::photon::{PhotonEmitter, PhotonWalk, Target};
-
-/// Photons of the caustic map are other ones than those of the global map.
-const GLOBAL_STREAM: u32 = 0;
-const CAUSTIC_STREAM: u32 = 1;
 
 /// The two-pass renderer.
 #[derive(Debug)]
@@ -98,6 +101,7 @@ impl Integrator for PhotonMapping {
             caustic_irradiance: maps.caustic_irradiance.as_ref(),
             seen: Seen::Accurately,
             accurate_distance: maps.accurate_distance,
+            accurate_share: settings.accurate_share,
             n_gather: settings.gather_rays,
             max_depth: settings.max_depth,
             sharp_alpha: settings.sharp_alpha,
@@ -153,50 +157,13 @@ const CAUSTIC_NAMES: MapNames = MapNames {
 impl Maps {
     /// `None` if the render was cancelled meanwhile.
     fn new(scene: &Scene, settings: &MappingSettings, control: &Control<'_>) -> Option<Self> {
-        let emitter = PhotonEmitter::new(scene);
-        let walk = PhotonWalk {
-            max_depth: settings.max_photon_depth,
-            sharp_alpha: settings.sharp_alpha,
-            wavelengths: settings.wavelengths,
-            pattern: settings.photons.pattern,
-            absorption: settings.photons.absorption,
-            sampler: scene.sampler,
-            stream: GLOBAL_STREAM,
-        };
-        let plan = MapPlan {
-            n_photons: u64::from(settings.global_photons),
-            content: Content::All,
-            walk,
-            k: settings.global_k as usize,
-            max_radius: settings.global_radius,
-            estimate: settings.global_estimate(),
-            place_step: settings.precompute as usize,
-        };
-        let precompute = |map: &LitMap, places: Vec<_>, plan: &MapPlan| {
-            (plan.place_step > 0).then(|| Precomputed::new(map, &places, plan.place_step, control))
-        };
-        let (global, places) = LitMap::fill(scene, &emitter, &plan, control)?;
-        let global_irradiance = precompute(&global, places, &plan);
-        let plan = MapPlan {
-            n_photons: u64::from(settings.caustic_photons),
-            content: Content::Caustic,
-            walk: PhotonWalk { stream: CAUSTIC_STREAM, ..walk },
-            k: settings.caustic_k as usize,
-            max_radius: settings.caustic_radius,
-            estimate: settings.estimate,
-            place_step: settings.precompute.min(1) as usize,
-        };
-        let aim = settings.photons.towards(Target::SharpShapes, settings.sharp_alpha);
-        let (caustic, places) = LitMap::fill(scene, &PhotonEmitter::aimed(scene, &aim), &plan, control)?;
-        let caustic_irradiance = precompute(&caustic, places, &plan);
-        if control.is_cancelled() {
-            return None;
-        }
+        let (global, global_irradiance, is_dark) = prepare(scene, settings.global_plan(scene), control)?;
+        let (caustic, caustic_irradiance, _) = prepare(scene, settings.caustic_plan(scene), control)?;
         let global_probe = Probe::new(scene, &global, settings.sharp_alpha);
         let caustic_probe = Probe::new(scene, &caustic, settings.sharp_alpha);
         Some(Self {
             accurate_distance: settings.accurate_distance.unwrap_or(2.0 * global_probe.mean_radius),
-            is_dark: emitter.is_dark(),
+            is_dark,
             global,
             caustic,
             global_irradiance,
@@ -205,6 +172,19 @@ impl Maps {
             caustic_probe,
         })
     }
+}
+
+/// A map, irradiance that is computed before, and whether no light sends photons. `None` if the render was cancelled meanwhile.
+fn prepare(
+    scene: &Scene,
+    plan: MapPlan,
+    control: &Control<'_>,
+) -> Option<(LitMap, Option<Precomputed>, bool)> {
+    let (Traced { map, arrivals, place_step }, is_dark) = obtain(scene, &plan, control)?;
+    let map = LitMap::new(scene, &plan, map);
+    let is_wanted = plan.place_step > 0 && place_step > 0;
+    let irradiance = is_wanted.then(|| Precomputed::new(&map, &arrivals, place_step, control));
+    (!control.is_cancelled()).then_some((map, irradiance, is_dark))
 }
 
 /// Camera paths that ask maps, with memory for each thread.

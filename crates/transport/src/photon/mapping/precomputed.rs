@@ -13,7 +13,8 @@ use etendue_math::Vector3;
 use etendue_spectrum::Xyz;
 use rayon::prelude::*;
 
-use super::lit_map::{Arrival, LitMap};
+use super::fill::Arrival;
+use super::lit_map::LitMap;
 use crate::integrator::{Control, RayCounts};
 use crate::photon::estimate::{EstimateScratch, irradiance};
 

@@ -9,18 +9,26 @@ use crate::photon::estimate::{DensityEstimate, Filter};
 
 /// The most photons of a map.
 pub(in crate::photon) const MOST_PHOTONS: u32 = 1 << 26;
+/// The most megabytes of maps.
+const MOST_MEGABYTES: f32 = 64_000.0;
 /// The most photons of an estimate.
 pub(in crate::photon) const MOST_NEIGHBOURS: u32 = 1 << 16;
 /// The most rays that gather from one place.
 const MOST_GATHER_RAYS: u32 = 4096;
 
 /// Settings of the two-pass renderer.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MappingSettings {
-    /// Photons of the global map, about.
-    pub global_photons: u32,
-    /// Photons of the caustic map, about.
-    pub caustic_photons: u32,
+    /// Photons of the global map, about; `None` for as many as are sensible, or as memory holds.
+    pub global_photons: Option<u32>,
+    /// Photons of the caustic map, about; `None` for as many as are sensible, or as memory holds.
+    pub caustic_photons: Option<u32>,
+    /// Megabytes that both maps may take where numbers of photons are not given.
+    pub memory: Option<f32>,
+    /// File of the global map, as it is named; `None` to make it.
+    pub global_file: Option<String>,
+    /// File of the caustic map, as it is named; `None` to make it.
+    pub caustic_file: Option<String>,
     /// Photons of an estimate of the global map.
     pub global_k: u32,
     /// Photons of an estimate of the caustic map.
@@ -31,6 +39,8 @@ pub struct MappingSettings {
     pub caustic_radius: Option<f32>,
     /// Rays that gather are followed accurately at surfaces nearer than this, in metres; `None` for twice the radius of estimates.
     pub accurate_distance: Option<f32>,
+    /// Surfaces whose share of a pixel's light is less than this are treated approximately (SPEC PM-6).
+    pub accurate_share: f32,
     /// Rays that gather from each surface that is seen.
     pub gather_rays: u32,
     /// Irradiance is computed before at one of so many photons; 0 for nowhere.
@@ -54,13 +64,17 @@ pub struct MappingSettings {
 impl Default for MappingSettings {
     fn default() -> Self {
         Self {
-            global_photons: 200_000,
-            caustic_photons: 200_000,
+            global_photons: None,
+            caustic_photons: None,
+            memory: None,
+            global_file: None,
+            caustic_file: None,
             global_k: 100,
             caustic_k: 80,
             global_radius: None,
             caustic_radius: None,
             accurate_distance: None,
+            accurate_share: 0.0,
             gather_rays: 1,
             precompute: 4,
             max_depth: 32,
@@ -97,9 +111,36 @@ pub(in crate::photon) const LIGHT_SAMPLER: ParameterSpec =
 pub(in crate::photon) const MAX_PHOTON_DEPTH: ParameterSpec =
     spec("maxphotondepth", "integer", "64", "", "most scattering events of a photon");
 
-const OWN_PARAMETERS: [ParameterSpec; 15] = [
+const OWN_PARAMETERS: [ParameterSpec; 19] = [
     spec("globalphotons", "integer", "200000", "", "photons to store in the global map, about"),
-    spec("causticphotons", "integer", "200000", "", "photons to store in the caustic map, about"),
+    spec(
+        "causticphotons",
+        "integer",
+        "1 per pixel",
+        "",
+        "photons to store in the caustic map, about; by default 200000 to 4000000",
+    ),
+    spec(
+        "photonmemory",
+        "float",
+        "none",
+        "MB",
+        "memory of both maps, each half of it, where the numbers of photons are not given",
+    ),
+    spec(
+        "globalmap",
+        "string",
+        "none",
+        "",
+        "file of the global map, written by `etendue photons --map global`, in place of tracing it",
+    ),
+    spec(
+        "causticmap",
+        "string",
+        "none",
+        "",
+        "file of the caustic map, written by `etendue photons --map caustic`, in place of tracing it",
+    ),
     spec("globalnearest", "integer", "100", "", "photons of an estimate of the global map"),
     spec("causticnearest", "integer", "80", "", "photons of an estimate of the caustic map"),
     spec("globalradius", "float", "by density", "m", "greatest radius of an estimate of the global map"),
@@ -110,6 +151,13 @@ const OWN_PARAMETERS: [ParameterSpec; 15] = [
         "twice the mean radius",
         "m",
         "surfaces nearer than this to where gathering starts are treated accurately, against leaks in corners",
+    ),
+    spec(
+        "accurateshare",
+        "float",
+        "0",
+        "",
+        "surfaces seen by scattering that are less than this share of a pixel ask the global map for all light",
     ),
     spec("gatherrays", "integer", "1", "", "rays that gather indirect light, for each camera sample"),
     spec(
@@ -161,17 +209,21 @@ impl MappingSettings {
         // Read where the scene is built.
         p.ignore("lightsampler");
         let photons =
-            |p: &mut Parameters<'_, '_>, name, default| p.count_within(name, default, 0, MOST_PHOTONS);
+            |p: &mut Parameters<'_, '_>, name| p.has(name).then(|| p.count_within(name, 0, 0, MOST_PHOTONS));
         let nearest =
             |p: &mut Parameters<'_, '_>, name, default| p.count_within(name, default, 1, MOST_NEIGHBOURS);
         Self {
-            global_photons: photons(p, "globalphotons", default.global_photons),
-            caustic_photons: photons(p, "causticphotons", default.caustic_photons),
+            global_photons: photons(p, "globalphotons"),
+            caustic_photons: photons(p, "causticphotons"),
+            memory: within(p, "photonmemory", "megabytes", 0.0..=MOST_MEGABYTES),
+            global_file: file(p, "globalmap"),
+            caustic_file: file(p, "causticmap"),
             global_k: nearest(p, "globalnearest", default.global_k),
             caustic_k: nearest(p, "causticnearest", default.caustic_k),
             global_radius: length(p, "globalradius"),
             caustic_radius: length(p, "causticradius"),
             accurate_distance: length(p, "accuratedistance"),
+            accurate_share: within(p, "accurateshare", "", 0.0..=1.0).unwrap_or_default(),
             gather_rays: p.count_within("gatherrays", default.gather_rays, 1, MOST_GATHER_RAYS),
             precompute: p.count("precompute", default.precompute),
             max_depth: p.count("maxdepth", default.max_depth),
@@ -189,6 +241,31 @@ impl MappingSettings {
     pub const fn global_estimate(&self) -> DensityEstimate {
         DensityEstimate { filter: Filter::Constant, ..self.estimate }
     }
+}
+
+/// A file, as it is named; `None` if none is.
+pub(in crate::photon) fn file(p: &mut Parameters<'_, '_>, name: &'static str) -> Option<String> {
+    Some(p.string(name, "")).filter(|name| !name.is_empty())
+}
+
+/// A number within bounds; `None` if it is not given.
+fn within(
+    p: &mut Parameters<'_, '_>,
+    name: &'static str,
+    unit: &str,
+    bounds: std::ops::RangeInclusive<f32>,
+) -> Option<f32> {
+    if !p.has(name) {
+        return None;
+    }
+    let value = p.float(name, 0.0);
+    if bounds.contains(&value) {
+        return Some(value);
+    }
+    let (span, least, most) = (p.span_of(name), bounds.start(), bounds.end());
+    let message = format!("\"{name}\" must be {least} to {most} {unit}, not {value}");
+    p.diagnostics().error(span, message.replace(" ,", ","));
+    None
 }
 
 /// A length in metres, not negative; `None` if it is not given.
