@@ -8,20 +8,31 @@
 //! SMAPE  mean |a - b| / (|a| + |b| + 0.01)
 //! ```
 //!
-//! LDR-FLIP (see [`flip`]) adds what an observer would see when flipping between the two. A pixel with a NaN or an
+//! Papers on rendering also state relMSE without the 0.1 % of the pixels that are worst, since a few fireflies decide the mean.
+//! LDR-FLIP (see [`flip`]) adds what an observer would see when flipping between the two, HDR-FLIP (see [`hdr_flip`]) the same over
+//! all exposures, SSIM how alike they are around each pixel, and the [z-test](ZTest) whether noise explains the difference. A pixel with a NaN or an
 //! infinity is masked and counted, never averaged: one of them would drown every other number.
 
 mod difference;
 pub mod flip;
+pub mod hdr_flip;
+mod ssim;
+mod views;
+mod z_test;
 
 use std::fmt;
 
-use crate::Image;
 pub use crate::box_downsample;
+use crate::{Image, srgb_encode};
 pub use difference::{DifferenceKind, DifferenceMap};
+pub(crate) use difference::{HEAT_RAMP, ramp_color};
+pub use views::{side_by_side, split};
+pub use z_test::{BEYOND, VARIANCE, ZTest};
 
 /// Keeps relative errors of dark pixels finite; the usual choice in papers on rendering.
 const RELATIVE_OFFSET: f64 = 0.01;
+/// Share of the pixels, the worst, that the trimmed relMSE leaves out; the usual choice in papers on rendering.
+const TRIMMED_SHARE: f64 = 0.001;
 
 /// What a comparison leaves open.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -91,12 +102,16 @@ pub struct Comparison {
     pub rmse: f64,
     /// Relative mean squared error.
     pub relmse: f64,
+    /// The same without the worst 0.1 % of the pixels.
+    pub relmse_trimmed: f64,
     /// Mean absolute error relative to the reference; 0.1 is ten per cent.
     pub mape: f64,
     /// Mean absolute error relative to both, in [0, 1].
     pub smape: f64,
     /// Peak signal-to-noise ratio in decibels, infinite for equal images.
     pub psnr_db: f64,
+    /// Mean structural similarity of what a display shows, 1 for equal images.
+    pub ssim: f64,
     /// Mean of FLIP's error map, in [0, 1].
     pub flip: f64,
     /// Mean of each channel of the test image.
@@ -125,9 +140,11 @@ pub fn compare(test: &Image, reference: &Image, settings: &Settings) -> Result<C
         mse: pair.mse(),
         rmse: pair.rmse(),
         relmse: pair.relmse(),
+        relmse_trimmed: pair.relmse_trimmed(),
         mape: pair.mape(),
         smape: pair.smape(),
         psnr_db: pair.psnr_db(settings.peak),
+        ssim: pair.ssim(settings.flip_exposure_ev),
         flip: pair.mean_of_map(&pair.flip_map(settings.pixels_per_degree, settings.flip_exposure_ev)),
         mean_test,
         mean_reference,
@@ -199,7 +216,20 @@ impl Pair {
 
     /// Relative mean squared error.
     pub fn relmse(&self) -> f64 {
-        self.mean(|a, b| (a - b) * (a - b) / (b * b + RELATIVE_OFFSET))
+        self.mean(relative_squared)
+    }
+
+    /// Relative mean squared error without the 0.1 % of the pixels (rounded down) where it is largest.
+    pub fn relmse_trimmed(&self) -> f64 {
+        let pixels = self.test.iter().zip(&self.reference).zip(&self.is_counted);
+        let counted = pixels.filter(|&(_, &is_counted)| is_counted).map(|(pair, _)| pair);
+        let error = |a: &[f32; 3], b: &[f32; 3]| {
+            (0..3).map(|c| relative_squared(a[c].into(), b[c].into())).sum::<f64>() / 3.0
+        };
+        let mut errors: Vec<f64> = counted.map(|(a, b)| error(a, b)).collect();
+        errors.sort_by(f64::total_cmp);
+        errors.truncate(errors.len() - (errors.len() as f64 * TRIMMED_SHARE) as usize);
+        errors.iter().sum::<f64>() / errors.len() as f64
     }
 
     /// Mean absolute error relative to the reference.
@@ -227,14 +257,31 @@ impl Pair {
         std::array::from_fn(|channel| self.mean_of_map(self.reference.iter().map(|pixel| &pixel[channel])))
     }
 
+    /// Mean structural similarity of both images as a display shows them: exposed, clipped to [0, 1] and encoded as sRGB. Masked
+    /// pixels are black in both.
+    pub fn ssim(&self, exposure_ev: f32) -> f64 {
+        let (test, reference) = (shown(&self.test, exposure_ev), shown(&self.reference, exposure_ev));
+        let plane = |pixels: &[[f32; 3]], c: usize| -> Vec<f32> {
+            pixels.iter().map(|pixel| srgb_encode(pixel[c])).collect()
+        };
+        let channel = |c| ssim::mean(&plane(&test, c), &plane(&reference, c), self.width);
+        (channel(0) + channel(1) + channel(2)) / 3.0
+    }
+
     /// FLIP's error of every pixel, 0 where masked; both images are exposed and clipped to [0, 1] first.
     pub fn flip_map(&self, pixels_per_degree: f32, exposure_ev: f32) -> Vec<f32> {
-        let exposure = exposure_ev.exp2();
-        let shown = |pixels: &[[f32; 3]]| -> Vec<[f32; 3]> {
-            pixels.iter().map(|pixel| pixel.map(|value| (value * exposure).clamp(0.0, 1.0))).collect()
-        };
-        let (test, reference) = (shown(&self.test), shown(&self.reference));
-        let mut map = flip::error_map(&test, &reference, [self.width, self.height], pixels_per_degree);
+        let (test, reference) = (shown(&self.test, exposure_ev), shown(&self.reference, exposure_ev));
+        self.masked(flip::error_map(&test, &reference, [self.width, self.height], pixels_per_degree))
+    }
+
+    /// HDR-FLIP's error of every pixel, 0 where masked.
+    pub fn hdr_flip_map(&self, pixels_per_degree: f32) -> Vec<f32> {
+        let size = [self.width, self.height];
+        self.masked(hdr_flip::error_map(&self.test, &self.reference, size, pixels_per_degree))
+    }
+
+    /// A map with 0 where pixels are masked.
+    fn masked(&self, mut map: Vec<f32>) -> Vec<f32> {
         for (value, &is_counted) in map.iter_mut().zip(&self.is_counted) {
             *value = if is_counted { *value } else { 0.0 };
         }
@@ -244,7 +291,10 @@ impl Pair {
     /// A picture of where the images differ.
     pub fn difference(&self, kind: DifferenceKind) -> DifferenceMap {
         let values = match kind {
-            DifferenceKind::Flip { pixels_per_degree } => self.flip_map(pixels_per_degree, 0.0),
+            DifferenceKind::Flip { pixels_per_degree, exposure_ev } => {
+                self.flip_map(pixels_per_degree, exposure_ev)
+            }
+            DifferenceKind::HdrFlip { pixels_per_degree } => self.hdr_flip_map(pixels_per_degree),
             _ => self.test.iter().zip(&self.reference).map(|(&a, &b)| kind.of_pixel(a, b)).collect(),
         };
         DifferenceMap { width: self.width, height: self.height, kind, values }
@@ -266,6 +316,17 @@ impl Pair {
         }
         sum / (3 * (self.n_pixels() - self.n_masked())) as f64
     }
+}
+
+/// Error of a value relative to the reference, squared.
+fn relative_squared(a: f64, b: f64) -> f64 {
+    (a - b) * (a - b) / (b * b + RELATIVE_OFFSET)
+}
+
+/// Pixels at an exposure, clipped to [0, 1].
+fn shown(pixels: &[[f32; 3]], exposure_ev: f32) -> Vec<[f32; 3]> {
+    let exposure = exposure_ev.exp2();
+    pixels.iter().map(|pixel| pixel.map(|value| (value * exposure).clamp(0.0, 1.0))).collect()
 }
 
 /// A ratio of means; 1 for two zeros.

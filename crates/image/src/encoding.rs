@@ -76,6 +76,20 @@ pub fn srgb_encode(linear: f32) -> f32 {
     (1.055 * f64::from(linear).powf(1.0 / 2.4) - 0.055) as f32
 }
 
+/// Value in [0, 1] that stands for a luminance in cd/m^2 by the perceptual quantizer of SMPTE ST 2084, whose steps are about as
+/// fine as the eye's; 0 to 10,000 cd/m^2, beyond which it is clipped. NaN becomes 0.
+#[must_use]
+pub fn pq_encode(luminance: f32) -> f32 {
+    const M1: f64 = 2610.0 / 16384.0;
+    const M2: f64 = 2523.0 / 4096.0 * 128.0;
+    const C1: f64 = 3424.0 / 4096.0;
+    const C2: f64 = 2413.0 / 4096.0 * 32.0;
+    const C3: f64 = 2392.0 / 4096.0 * 32.0;
+    let share = f64::from(luminance.max(0.0).min(10_000.0)) / 10_000.0;
+    let power = share.powf(M1);
+    ((C1 + C2 * power) / (1.0 + C3 * power)).powf(M2) as f32
+}
+
 /// Linear light of each of the 256 values of a byte under one [`Encoding`].
 #[derive(Clone, Debug)]
 pub struct DecodeTable {

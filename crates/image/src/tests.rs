@@ -1,6 +1,6 @@
 use crate::{
     Channel, Chromaticities, DecodeTable, Encoding, Image, TexelData, Texels, box_downsample, luminance,
-    srgb_decode, srgb_encode,
+    pq_encode, srgb_decode, srgb_encode,
 };
 
 /// White has luminance 1 whatever the primaries' weights.
@@ -167,4 +167,16 @@ fn chromaticities_travel() {
     texels.color_space = Some(Chromaticities::ACES2065_1);
     assert_eq!(texels.to_linear(Encoding::Srgb).color_space, texels.color_space);
     assert_eq!(texels.compact().color_space, Some(Chromaticities::ACES2065_1));
+}
+
+/// The curve of SMPTE ST 2084 at luminances for which its table is published: 0, 100, 1000 and 10,000 cd/m².
+#[test]
+fn perceptual_quantizer() {
+    for (luminance, code) in [(0.0, 7.3e-7), (100.0, 0.508_078), (1000.0, 0.751_827), (10_000.0, 1.0)] {
+        assert!((pq_encode(luminance) - code).abs() < 1e-6, "{luminance}: {}", pq_encode(luminance));
+    }
+    assert_eq!(
+        [pq_encode(f32::INFINITY), pq_encode(f32::NAN), pq_encode(-1.0)],
+        [1.0, pq_encode(0.0), pq_encode(0.0)]
+    );
 }

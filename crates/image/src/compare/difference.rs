@@ -15,6 +15,13 @@ pub enum DifferenceKind {
     Flip {
         /// Pixels per degree of visual angle.
         pixels_per_degree: f32,
+        /// Exposure of both images in stops.
+        exposure_ev: f32,
+    },
+    /// HDR-FLIP's error, in [0, 1].
+    HdrFlip {
+        /// Pixels per degree of visual angle.
+        pixels_per_degree: f32,
     },
 }
 
@@ -24,7 +31,9 @@ impl DifferenceKind {
         let (a, b) = (luminance(test), luminance(reference));
         match self {
             DifferenceKind::Signed => a - b,
-            DifferenceKind::Absolute | DifferenceKind::Flip { .. } => (a - b).abs(),
+            DifferenceKind::Absolute | DifferenceKind::Flip { .. } | DifferenceKind::HdrFlip { .. } => {
+                (a - b).abs()
+            }
             DifferenceKind::RelativeSquared => (a - b) * (a - b) / (b * b + super::RELATIVE_OFFSET as f32),
         }
     }
@@ -71,14 +80,14 @@ impl DifferenceMap {
 }
 
 /// Black, violet, red, orange, pale yellow in sRGB values: lightness rises evenly.
-const HEAT_RAMP: [[f32; 3]; 5] =
+pub(crate) const HEAT_RAMP: [[f32; 3]; 5] =
     [[0.0, 0.0, 0.02], [0.32, 0.07, 0.48], [0.72, 0.21, 0.47], [0.98, 0.53, 0.38], [0.99, 0.99, 0.75]];
 /// Blue, white, red in sRGB values.
 const SIGNED_RAMP: [[f32; 3]; 5] =
     [[0.02, 0.19, 0.38], [0.26, 0.58, 0.76], [0.97, 0.97, 0.97], [0.84, 0.38, 0.3], [0.4, 0.0, 0.12]];
 
 /// Linear light at a place of a ramp of sRGB values.
-fn ramp_color(ramp: &[[f32; 3]], unit: f32) -> [f32; 3] {
+pub(crate) fn ramp_color(ramp: &[[f32; 3]], unit: f32) -> [f32; 3] {
     let place = unit.clamp(0.0, 1.0) * (ramp.len() - 1) as f32;
     let index = (place as usize).min(ramp.len() - 2);
     let t = place - index as f32;

@@ -1,4 +1,7 @@
-use super::{CompareError, DifferenceKind, Pair, Settings, compare, flip};
+use super::{
+    CompareError, DifferenceKind, Pair, Settings, VARIANCE, ZTest, compare, flip, hdr_flip, side_by_side,
+    split,
+};
 use crate::{Image, srgb_decode};
 
 fn gradient() -> Image {
@@ -193,6 +196,128 @@ fn flip_agrees_with_the_authors() {
     }
 }
 
+/// The two pictures of [`flip_agrees_with_the_authors`], eight stops brighter from left to right by `stops`.
+fn patterns(stops: f32) -> [Image; 2] {
+    [changed_pattern, pattern].map(|pattern| {
+        Image::from_fn(64, 48, |x, y| {
+            let exposure = (stops * x as f32 / 64.0).exp2();
+            pattern(x, y).map(|byte| srgb_decode(f32::from(byte) / 255.0) * exposure)
+        })
+    })
+}
+
+/// The authors' Python package (`flip-evaluator` 1.7) on the same two pictures, eight stops brighter to the right.
+#[test]
+fn hdr_flip_agrees_with_the_authors() {
+    let [test, reference] = patterns(8.0);
+    let exposures = hdr_flip::exposures(&reference.rgb_pixels().expect("colour"));
+    assert_eq!(exposures.len(), 6);
+    assert!((exposures[0] + 6.235_355_4).abs() < 1e-5 && (exposures[5] + 0.652_319_73).abs() < 1e-5);
+    let pair = Pair::new(&test, &reference, None).expect("same size");
+    let map = pair.hdr_flip_map(flip::PIXELS_PER_DEGREE);
+    let mean = pair.mean_of_map(&map);
+    assert!((mean - 0.417_033_2).abs() < 1e-5, "{mean}");
+    let pixels =
+        [([0, 0], 0.155_251_25), ([30, 20], 0.974_960_74), ([50, 40], 0.642_549_93), ([63, 47], 0.506_825_8)];
+    for ([x, y], expected) in pixels {
+        let value = map[y * 64 + x];
+        assert!((value - expected).abs() < 2e-5, "{x}, {y}: {value} instead of {expected}");
+    }
+}
+
+/// What black, infinite and huge references ask for stays bounded.
+#[test]
+fn exposures_of_odd_references() {
+    assert!(hdr_flip::exposures(&[[0.0; 3]; 4]).is_empty());
+    assert!(hdr_flip::exposures(&[]).is_empty());
+    let n = hdr_flip::exposures(&[[0.0; 3], [0.0; 3], [f32::MAX; 3]]).len();
+    assert!((100..200).contains(&n), "{n}");
+    let one = hdr_flip::exposures(&[[1.0; 3]; 4]);
+    assert_eq!(one.len(), 2);
+    let pair = Pair::new(&constant([0.0; 3]), &constant([0.0; 3]), None).expect("same size");
+    assert_eq!(pair.mean_of_map(&pair.hdr_flip_map(flip::PIXELS_PER_DEGREE)), 0.0);
+}
+
+/// scikit-image 0.26 and NumPy on the same two pictures: `structural_similarity` with `gaussian_weights`, `sigma` 1.5 and without
+/// `use_sample_covariance`, and the formulas of the others in double precision.
+#[test]
+fn metrics_agree_with_scikit_image() {
+    let [test, reference] = patterns(0.0);
+    let result = compare(&test, &reference, &Settings::default()).expect("same size");
+    for (what, value, expected) in [
+        ("ssim", result.ssim, 0.776_176_15),
+        ("mse", result.mse, 0.039_445_185_018),
+        ("relmse", result.relmse, 0.272_797_961_9),
+        ("trimmed relmse", result.relmse_trimmed, 0.267_925_819_1),
+        ("mape", result.mape, 0.362_538_949_9),
+        ("smape", result.smape, 0.132_368_389_1),
+        ("psnr", result.psnr_db, 14.040_060_025),
+    ] {
+        assert!((value / expected - 1.0).abs() < 2e-6, "{what}: {value} instead of {expected}");
+    }
+}
+
+/// Pictures smaller than the window have a similarity too; equal ones are alike.
+#[test]
+fn similarity_of_small_pictures() {
+    for (width, height) in [(1, 1), (11, 2), (11, 11), (30, 12)] {
+        let image = Image::from_fn(width, height, |x, y| [0.1 * (x % 7) as f32, 0.2 * (y % 3) as f32, 0.5]);
+        let pair = Pair::new(&image, &image, None).expect("same size");
+        assert_eq!(pair.ssim(0.0), 1.0);
+    }
+}
+
+/// Ten thousand pixels of honest noise pass, those of another mean do not.
+#[test]
+fn z_test() {
+    let noise = |seed: u32, mean: f32| {
+        let normal = |i: u32| {
+            // Sum of twelve hashed uniform numbers: variance 1.
+            let uniform = |k: u32| {
+                let mut h =
+                    (i * 12 + k).wrapping_add(seed.wrapping_mul(0x9e37_79b9)).wrapping_mul(0x85eb_ca6b);
+                h = (h ^ (h >> 13)).wrapping_mul(0xc2b2_ae35);
+                h = (h ^ (h >> 16)).wrapping_mul(0x27d4_eb2f);
+                (h ^ (h >> 15)) as f32 / u32::MAX as f32
+            };
+            (0..12).map(uniform).sum::<f32>() - 6.0
+        };
+        let mut image = Image::gray(100, 100, (0..10_000).map(|i| mean + 0.5 * normal(i)).collect());
+        image.set_channel(VARIANCE, vec![0.25; 10_000]);
+        image
+    };
+    let test = |a: &Image, b: &Image| ZTest::new(a, b).expect("same size").expect("variance");
+    let same = test(&noise(1, 3.0), &noise(2, 3.0));
+    assert_eq!(same.n_tested, 10_000);
+    // Standard errors of the root mean square and of the share: 0.007 and 0.0005; five of each.
+    assert!((same.rms - 1.0).abs() < 0.035, "{}", same.rms);
+    assert!((same.share_beyond - 0.0027).abs() < 0.0026, "{}", same.share_beyond);
+    assert!(same.z_mean.abs() < 5.0 && same.p_mean > 1e-6);
+    let other = test(&noise(1, 3.0), &noise(2, 3.1));
+    assert!(other.z_mean < -10.0 && other.p_mean < 1e-6 && other.z.len() == 10_000);
+    assert_eq!(ZTest::new(&constant([1.0; 3]), &constant([1.0; 3])), Ok(None));
+    // Without noise there is nothing to test, and NaN is left out.
+    let mut silent = constant([1.0; 3]);
+    silent.set_channel(VARIANCE, vec![0.0; silent.n_pixels()]);
+    let mut broken = silent.clone();
+    broken.channels[0].values[3] = f32::NAN;
+    assert_eq!(test(&silent, &broken).n_tested, 0);
+}
+
+/// Views have the pixels of both.
+#[test]
+fn views() {
+    let (a, b) = (constant([0.25; 3]), constant([0.5; 3]));
+    let beside = side_by_side(&[&a, &b]).expect("colour");
+    assert_eq!([beside.width, beside.height], [2 * a.width + 1, a.height]);
+    let pixels = beside.rgb_pixels().expect("colour");
+    assert_eq!([pixels[0][0], pixels[a.width][0], pixels[a.width + 1][0]], [0.25, 1.0, 0.5]);
+    let halves = split(&a, &b).expect("colour").rgb_pixels().expect("colour");
+    assert_eq!([halves[0][0], halves[a.width / 2][0], halves[a.width - 1][0]], [0.25, 1.0, 0.5]);
+    assert_eq!(split(&a, &Image::rgb(1, 1, vec![[0.0; 3]])), None);
+    assert_eq!(side_by_side(&[]), None);
+}
+
 /// A difference map of a darker pixel is negative there, shown blue, and zero elsewhere.
 #[test]
 fn difference_maps() {
@@ -208,6 +333,7 @@ fn difference_maps() {
     assert!((absolute.max() - 0.25).abs() < 1e-6);
     let relative = pair.difference(DifferenceKind::RelativeSquared).to_image();
     assert!((relative.channels[0].values[9] - 0.0625 / 0.26).abs() < 1e-6);
-    let flip = pair.difference(DifferenceKind::Flip { pixels_per_degree: flip::PIXELS_PER_DEGREE });
+    let flip = pair
+        .difference(DifferenceKind::Flip { pixels_per_degree: flip::PIXELS_PER_DEGREE, exposure_ev: 0.0 });
     assert!(flip.values[9] > flip.values[63]);
 }
