@@ -10,6 +10,7 @@ pub mod method;
 pub mod path;
 pub mod path_tracing;
 pub mod photon;
+pub mod probe;
 pub mod render;
 pub mod whitted;
 

@@ -27,6 +27,7 @@ mod photon_mapping;
 mod photon_maps;
 mod photons;
 mod pictures;
+mod probe;
 mod progressive;
 mod radiometry;
 mod reuse;
