@@ -2,10 +2,10 @@
 //!
 //! | format | read | written | numbers |
 //! |---|---|---|---|
-//! | OpenEXR | all layers and channels, all compressions of the `exr` crate | every channel, ZIP | half, float, integer |
+//! | OpenEXR | all layers and channels, all compressions of the `exr` crate | every channel, ZIP, rows or tiles | half, float, integer |
 //! | PFM | both byte orders, gray and colour | `R G B` or `Y` | float |
 //! | Radiance HDR | yes | `R G B` | shared exponent |
-//! | PNG | 8 and 16 bit | 8 bit sRGB | encoded integers |
+//! | PNG | 8 and 16 bit | 8 bit sRGB and Display P3, 16 bit PQ | encoded integers |
 //! | PPM | P3 and P6, 8 and 16 bit | P6, or P3 by its own function | encoded integers |
 //! | JPEG, TGA, QOI | yes | no | encoded integers |
 //!
@@ -14,6 +14,7 @@
 //! is taken, and a failure inside a decoder, even a panic, becomes an [`ImageError`] with the file's name.
 
 mod atomic;
+mod display_png;
 mod error;
 mod exif;
 mod netpbm;
@@ -32,9 +33,13 @@ use etendue_image::{Encoding, Image, Texels};
 use image::ImageFormat;
 
 pub use atomic::{check_writable, write_atomically};
+pub use display_png::DisplayPng;
 pub use error::{ImageError, ImageErrorCause};
 pub use exif::exposure_of_photograph;
-pub use write::{png_bytes, write_image, write_png, write_ppm, write_ppm_ascii};
+pub use openexr::{ExrBlocks, ExrChannel, ExrInfo, ExrNumbers, ExrPart, ExrSettings};
+pub use write::{
+    png_bytes, write_display_png, write_exr, write_image, write_png, write_ppm, write_ppm_ascii,
+};
 
 /// Most pixels of a picture that is read.
 const MAX_PIXELS: u64 = 1 << 31;
@@ -93,6 +98,21 @@ pub fn read_image(path: impl AsRef<Path>) -> Result<Image, ImageError> {
             Format::Pfm => Ok(pfm::read(&mut file)?.to_image(Encoding::Linear)),
             Format::Netpbm => Ok(netpbm::read(&mut file)?.to_image(Encoding::Srgb)),
             Format::Raster(format) => Ok(raster::read(&mut file, format)?.to_image(Encoding::Srgb)),
+        })
+    })
+}
+
+/// What the headers of an OpenEXR file say; `None` for other formats.
+///
+/// # Errors
+/// When the file cannot be read, is of no known format, or its headers contradict themselves.
+pub fn read_exr_info(path: impl AsRef<Path>) -> Result<Option<ExrInfo>, ImageError> {
+    let path = path.as_ref();
+    with_path(path, || {
+        let mut file = Opened::new(path)?;
+        guarded(|| match file.format {
+            Format::OpenExr => openexr::read_info(&mut file).map(Some),
+            _ => Ok(None),
         })
     })
 }

@@ -2,33 +2,36 @@
 //!
 //! Layers are read in either form: parts with names of their own, or dotted channel names in one part. They are
 //! written as dotted names in one part, which every viewer knows. Attribute texts are UTF-8. The picture is the data
-//! window; where parts have different data windows they are placed into the display window on zeros.
+//! window; where parts have different data windows they are placed into the display window on zeros. Attributes of other types
+//! than text that pictures of renderers have (`attributes`) are texts of numbers in memory.
 //! Blocks are decompressed on the calling thread: a panic in a pool's thread would end the process.
 
-use std::io::{Seek, SeekFrom, Write};
+mod attributes;
+mod info;
+mod write;
 
-use etendue_image::{Channel, Chromaticities, Image, TexelData, Texels};
-use exr::image::write::WritableImage;
+use std::io::{Seek, SeekFrom};
+
+use etendue_image::{Channel, Image, TexelData, Texels};
 use exr::image::{AnyChannel, AnyChannels, FlatImage, FlatSamples, Layer};
-use exr::math::Vec2;
 use exr::meta::MetaData;
-use exr::meta::attribute::{self, AttributeValue, LineOrder, Text, TextBytes};
-use exr::meta::header::{ImageAttributes, LayerAttributes, standard_names};
-use exr::prelude::{Blocks, Compression, Encoding, ReadChannels, ReadLayers};
+use exr::meta::attribute::Text;
+use exr::prelude::{ReadChannels, ReadLayers};
 
 use super::{ImageErrorCause, Opened, Outcome, check_size};
+use attributes::{chromaticities_from_exr, read_metadata};
 
-/// Metadata key for primaries and white other than Rec. 709: eight numbers, x and y of red, green, blue, white.
-const CHROMATICITIES_KEY: &str = "chromaticities";
-/// Put before metadata keys that the format reserves for attributes of another type.
-const RESERVED_PREFIX: &str = "meta.";
+pub(super) use info::read_info;
+pub use info::{ExrChannel, ExrInfo, ExrPart};
+pub(super) use write::write;
+pub use write::{ExrBlocks, ExrNumbers, ExrSettings};
 
 /// Every channel of every layer as floats.
 pub(super) fn read_image(file: &mut Opened) -> Outcome<Image> {
     let exr = read(file)?;
     let window = Window::of_layers(&exr);
     let mut image = Image::new(window.width, window.height);
-    image.metadata = read_metadata(&exr);
+    image.metadata = read_metadata(&exr, window.is_data_window);
     let n_layers = exr.layer_data.len();
     for layer in &exr.layer_data {
         let layer_name = layer.attributes.layer_name.as_ref().filter(|_| n_layers > 1).map(utf8);
@@ -96,6 +99,8 @@ fn read(file: &mut Opened) -> Outcome<FlatImage> {
 /// Where the picture lies in the coordinates of the file.
 #[derive(Copy, Clone, Debug)]
 struct Window {
+    /// True if it is the data window of all layers.
+    is_data_window: bool,
     origin: [i64; 2],
     width: usize,
     height: usize,
@@ -109,6 +114,7 @@ impl Window {
         let display = (exr.attributes.display_window.position, exr.attributes.display_window.size);
         let (position, size) = first.filter(|_| all_equal).unwrap_or(display);
         Window {
+            is_data_window: all_equal,
             origin: [position.x().into(), position.y().into()],
             width: size.width(),
             height: size.height(),
@@ -187,126 +193,9 @@ fn subsampled(name: &str) -> ImageErrorCause {
     ImageErrorCause::Unsupported(format!("channel `{name}` has fewer samples than the picture has pixels"))
 }
 
-/// Text and number attributes of the file and of its first layer.
-fn read_metadata(exr: &FlatImage) -> std::collections::BTreeMap<String, String> {
-    let mut metadata = std::collections::BTreeMap::new();
-    let mut add = |key: String, value: String| {
-        metadata.insert(key.strip_prefix(RESERVED_PREFIX).unwrap_or(&key).to_owned(), value)
-    };
-    let layer = exr.layer_data.first().map(|layer| &layer.attributes);
-    let other = layer.into_iter().flat_map(|layer| &layer.other).chain(&exr.attributes.other);
-    for (key, value) in other {
-        let value = match value {
-            AttributeValue::Text(text) => utf8(text),
-            AttributeValue::F32(number) => number.to_string(),
-            AttributeValue::F64(number) => number.to_string(),
-            AttributeValue::I32(number) => number.to_string(),
-            _ => continue,
-        };
-        add(utf8(key), value);
-    }
-    if let Some(layer) = layer {
-        let known = [
-            ("owner", &layer.owner),
-            ("comments", &layer.comments),
-            ("capDate", &layer.capture_date),
-            ("software", &layer.software_name),
-        ];
-        for (key, text) in known {
-            text.iter().for_each(|text| drop(add(key.to_owned(), utf8(text))));
-        }
-    }
-    if let Some(found) = exr.attributes.chromaticities.map(chromaticities_from_exr)
-        && found != Chromaticities::REC709
-    {
-        let numbers = [found.red, found.green, found.blue, found.white].concat();
-        add(CHROMATICITIES_KEY.to_owned(), numbers.iter().map(f32::to_string).collect::<Vec<_>>().join(" "));
-    }
-    metadata
-}
-
-/// Writes every channel as float, compressed by ZIP in blocks of 16 rows, with the metadata as text attributes.
-pub(super) fn write(out: &mut (impl Write + Seek), image: &Image) -> Outcome<()> {
-    let size = Vec2(image.width, image.height);
-    let channel = |channel: &Channel| {
-        let valid = !channel.name.is_empty() && channel.name.len() < 256 && !channel.name.contains('\0');
-        if !valid {
-            return Err(ImageErrorCause::Malformed(format!(
-                "`{}` cannot be the name of a channel",
-                channel.name
-            )));
-        }
-        Ok(AnyChannel::new(text(&channel.name), FlatSamples::F32(channel.values.clone())))
-    };
-    let channels = AnyChannels::sort(image.channels.iter().map(channel).collect::<Outcome<_>>()?);
-    let encoding = Encoding {
-        compression: Compression::ZIP16,
-        blocks: Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
-    };
-    let layer = Layer::new(size, LayerAttributes::default(), encoding, channels);
-    let mut exr = exr::image::Image::new(ImageAttributes::with_size(size), layer);
-    let primaries = image.metadata.get(CHROMATICITIES_KEY).and_then(|text| parse_chromaticities(text));
-    exr.attributes.chromaticities = Some(chromaticities_to_exr(primaries.unwrap_or(Chromaticities::REC709)));
-    for (key, value) in &image.metadata {
-        set_attribute(&mut exr.layer_data.attributes, key, value);
-    }
-    Ok(exr.write().to_buffered(out)?)
-}
-
-/// Stores one metadata entry where the format has its place for it.
-fn set_attribute(attributes: &mut LayerAttributes, key: &str, value: &str) {
-    match key {
-        "owner" => attributes.owner = Some(text(value)),
-        "comments" => attributes.comments = Some(text(value)),
-        "capDate" => attributes.capture_date = Some(text(value)),
-        "software" => attributes.software_name = Some(text(value)),
-        _ => {
-            if key == CHROMATICITIES_KEY && parse_chromaticities(value).is_some() {
-                return;
-            }
-            let is_reserved = standard_names::ALL.contains(&key.as_bytes()) || key.is_empty();
-            let key = if is_reserved { format!("{RESERVED_PREFIX}{key}") } else { key.to_owned() };
-            attributes.other.insert(text(&key), AttributeValue::Text(text(value)));
-        }
-    }
-}
-
-fn parse_chromaticities(text: &str) -> Option<Chromaticities> {
-    let numbers: Option<Vec<f32>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
-    match numbers?.as_slice() {
-        &[rx, ry, gx, gy, bx, by, wx, wy] => {
-            Some(Chromaticities { red: [rx, ry], green: [gx, gy], blue: [bx, by], white: [wx, wy] })
-        }
-        _ => None,
-    }
-}
-
-fn chromaticities_from_exr(found: attribute::Chromaticities) -> Chromaticities {
-    let pair = |Vec2(x, y): Vec2<f32>| [x, y];
-    Chromaticities {
-        red: pair(found.red),
-        green: pair(found.green),
-        blue: pair(found.blue),
-        white: pair(found.white),
-    }
-}
-
-fn chromaticities_to_exr(own: Chromaticities) -> attribute::Chromaticities {
-    let pair = |[x, y]: [f32; 2]| Vec2(x, y);
-    attribute::Chromaticities {
-        red: pair(own.red),
-        green: pair(own.green),
-        blue: pair(own.blue),
-        white: pair(own.white),
-    }
-}
-
-/// Bytes of a text as they are.
-fn text(text: &str) -> Text {
-    Text::from_bytes_unchecked(TextBytes::from_slice(text.as_bytes()))
-}
-
 fn utf8(text: &Text) -> String {
     String::from_utf8_lossy(text.as_slice()).into_owned()
 }
+
+#[cfg(test)]
+mod tests;

@@ -10,7 +10,8 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
 use super::{
-    ImageError, ImageErrorCause, Outcome, extension, netpbm, openexr, pfm, with_path, write_atomically,
+    DisplayPng, ExrSettings, ImageError, ImageErrorCause, Outcome, display_png, extension, netpbm, openexr,
+    pfm, with_path, write_atomically,
 };
 
 /// Writes a picture: `exr` (every channel and the metadata), `pfm`, `hdr`, `png` or `ppm`. The integer formats get
@@ -24,7 +25,7 @@ pub fn write_image(path: impl AsRef<Path>, image: &Image) -> Result<(), ImageErr
     with_path(path, || {
         let extension = extension(path);
         match extension.as_str() {
-            "exr" => write_whole(path, image, |out| openexr::write(out, image)),
+            "exr" => write_whole(path, image, |out| openexr::write(out, image, ExrSettings::default())),
             "pfm" => write_whole(path, image, |out| pfm::write(out, image)),
             "hdr" | "pic" => write_whole(path, image, |out| write_hdr(out, image)),
             "png" => write_whole(path, image, |out| encode_png(out, image, Quantization::default())),
@@ -32,6 +33,15 @@ pub fn write_image(path: impl AsRef<Path>, image: &Image) -> Result<(), ImageErr
             _ => Err(ImageErrorCause::UnknownFormat { extension: extension.clone() }),
         }
     })
+}
+
+/// Writes OpenEXR in a chosen way.
+///
+/// # Errors
+/// As [`write_image`].
+pub fn write_exr(path: impl AsRef<Path>, image: &Image, settings: ExrSettings) -> Result<(), ImageError> {
+    let path = path.as_ref();
+    with_path(path, || write_whole(path, image, |out| openexr::write(out, image, settings)))
 }
 
 /// Writes 8-bit PNG with a chosen encoding and dithering.
@@ -45,6 +55,19 @@ pub fn write_png(
 ) -> Result<(), ImageError> {
     let path = path.as_ref();
     with_path(path, || write_whole(path, image, |out| encode_png(out, image, quantization)))
+}
+
+/// Writes PNG for a display that shows more than sRGB.
+///
+/// # Errors
+/// As [`write_image`].
+pub fn write_display_png(
+    path: impl AsRef<Path>,
+    image: &Image,
+    display: DisplayPng,
+) -> Result<(), ImageError> {
+    let path = path.as_ref();
+    with_path(path, || write_whole(path, image, |out| display_png::encode(out, image, display)))
 }
 
 /// An 8-bit PNG in memory, to put into another file. `None` for a picture without pixels or colour.
@@ -140,7 +163,8 @@ pub(super) fn no_color(image: &Image) -> ImageErrorCause {
     ImageErrorCause::NoColor { channels: image.channels.iter().map(|channel| channel.name.clone()).collect() }
 }
 
-fn size_u32(image: &Image) -> Outcome<[u32; 2]> {
+/// Width and height as most formats store them.
+pub(super) fn size_u32(image: &Image) -> Outcome<[u32; 2]> {
     let too_large = ImageErrorCause::TooLarge { width: image.width as u64, height: image.height as u64 };
     match (u32::try_from(image.width), u32::try_from(image.height)) {
         (Ok(width), Ok(height)) => Ok([width, height]),

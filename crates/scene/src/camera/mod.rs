@@ -9,6 +9,7 @@ mod differentials;
 mod fisheye;
 mod importance;
 mod lens;
+mod matrices;
 mod orthographic;
 mod perspective;
 mod photographic;
