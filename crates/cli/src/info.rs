@@ -11,7 +11,7 @@ use crate::args::InfoArguments;
 use crate::failure::Result;
 use crate::list::print;
 use crate::load::{LoadedScene, Overrides, load};
-use crate::photon_file;
+use crate::{image, photon_file};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &InfoArguments) -> Result<()> {
@@ -23,6 +23,9 @@ pub(crate) fn run(arguments: &InfoArguments) -> Result<()> {
             print_lines("", &description);
         }
         return Ok(());
+    }
+    if image::is_picture(&arguments.scene) {
+        return image::info(&arguments.scene, arguments.json);
     }
     let loaded = load(&arguments.scene, &Overrides::default(), PathExpressions::default(), arguments.json)?;
     let description = describe(&loaded);
@@ -171,7 +174,7 @@ const fn kind_name(light: &Light) -> &'static str {
 }
 
 /// A value for people: a line for each value, with the path to it.
-fn print_lines(prefix: &str, value: &Value) {
+pub(crate) fn print_lines(prefix: &str, value: &Value) {
     match value {
         Value::Object(map) => {
             for (key, value) in map {

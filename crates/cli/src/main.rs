@@ -10,6 +10,8 @@ mod compare;
 mod convert;
 mod exposures;
 mod failure;
+mod falsecolor;
+mod image;
 mod info;
 mod list;
 mod load;
@@ -18,6 +20,8 @@ mod metadata;
 mod outputs;
 mod photon_file;
 mod photons;
+mod preview;
+mod probe;
 mod progress;
 mod render;
 mod report;
@@ -42,6 +46,9 @@ fn main() -> ExitCode {
         Command::Convert(arguments) => convert::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
         Command::Tonemap(arguments) => tonemap::run(&arguments),
+        Command::Image(arguments) => image::run(&arguments),
+        Command::Falsecolor(arguments) => falsecolor::run(&arguments),
+        Command::Probe(arguments) => probe::run(&arguments),
         Command::Hdr(arguments) => exposures::hdr(&arguments),
         Command::Fuse(arguments) => exposures::fusion(&arguments),
         Command::Study(arguments) => study::run(&arguments),

@@ -7,6 +7,7 @@ use etendue::image::Image;
 use etendue::scene::document::Value;
 use etendue::scene::film::PixelBounds;
 use etendue::scene::{Film, Scene};
+use etendue::spectrum::{ColorSpace, ColorSpaceName};
 use etendue::transport::method_name;
 
 /// Keys of the metadata.
@@ -21,6 +22,12 @@ pub(crate) const SPP: &str = "etendue.spp";
 pub(crate) const PIXELS: &str = "etendue.pixels";
 /// Luminance of unit red, green and blue.
 pub(crate) const LUMINANCE: &str = "etendue.luminance";
+/// Name of the colour space of the colour channels.
+pub(crate) const COLOR_SPACE: &str = "etendue.colorspace";
+/// Their primaries and white, as files of OpenEXR tell them: x and y of red, green, blue and white.
+pub(crate) const CHROMATICITIES: &str = "chromaticities";
+/// Luminance of the colour (1, 1, 1) in cd/m², as files of OpenEXR tell it.
+pub(crate) const WHITE_LUMINANCE: &str = "whiteLuminance";
 
 /// Describes a render.
 #[must_use]
@@ -40,15 +47,37 @@ pub(crate) fn describe(
     set(SPP, film.n_passes().to_string());
     set("etendue.integrator", describe_integrator(scene));
     set("etendue.unit", "cd/m^2 times exposure time in s times ISO / 100".to_owned());
-    set("etendue.colorspace", film.settings().color_space.name().to_owned());
+    set(COLOR_SPACE, film.settings().color_space.name().to_owned());
+    if film.settings().color_space != ColorSpaceName::Srgb {
+        let space = ColorSpace::get(film.settings().color_space);
+        let points = space.primaries_xy.iter().chain([&space.white_xy]).flatten();
+        set(CHROMATICITIES, points.map(ToString::to_string).collect::<Vec<_>>().join(" "));
+    }
     let crop = film.settings().crop;
     set(PIXELS, format!("{} {} {} {}", crop.min[0], crop.max[0], crop.min[1], crop.max[1]));
     set("etendue.resolution", format!("{} {}", film.settings().resolution[0], film.settings().resolution[1]));
     set(LUMINANCE, film.settings().luminance_weights().map(|w| w.to_string()).join(" "));
+    set(WHITE_LUMINANCE, film.settings().sensor.settings().imaging_ratio().recip().to_string());
+    let resolution = film.settings().resolution;
+    if [crop.min, crop.max] != [[0, 0], resolution] {
+        set("dataWindow", format!("{} {}", crop.min[0], crop.min[1]));
+        set("displayWindow", format!("0 0 {} {}", resolution[0], resolution[1]));
+    }
+    let (world_to_camera, world_to_ndc) = scene.camera.projection_matrices(resolution);
+    set("worldToCamera", join(&world_to_camera));
+    if let Some(matrix) = world_to_ndc {
+        set("worldToNDC", join(&matrix));
+    }
     let camera = scene.camera.world_from_camera().start;
     let rows: Vec<String> = camera.rows().iter().flatten().map(ToString::to_string).collect();
     set("etendue.world_from_camera", rows.join(" "));
     metadata
+}
+
+/// Rows of a matrix for column vectors as one of row vectors, as files of OpenEXR have them.
+fn join(matrix: &[[f32; 4]; 4]) -> String {
+    let transposed = (0..4).flat_map(|column| (0..4).map(move |row| matrix[row][column].to_string()));
+    transposed.collect::<Vec<_>>().join(" ")
 }
 
 fn describe_integrator(scene: &Scene) -> String {

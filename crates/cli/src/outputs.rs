@@ -4,8 +4,11 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use etendue::image::Image;
-use etendue::io::images::{ImageError, check_writable, write_image};
+use etendue::io::images::{
+    ExrBlocks, ExrNumbers, ExrSettings, ImageError, check_writable, write_exr, write_image,
+};
 
+use crate::args::ExrArguments;
 use crate::failure::{Failure, Result};
 
 /// Extensions of the formats that are written.
@@ -67,6 +70,19 @@ pub(crate) fn check_distinct<'p>(paths: impl Iterator<Item = &'p PathBuf>) -> Re
     Ok(())
 }
 
+/// How .exr files are written, by the options.
+pub(crate) fn exr_settings(arguments: ExrArguments) -> ExrSettings {
+    ExrSettings {
+        numbers: if arguments.half { ExrNumbers::Half } else { ExrNumbers::Float },
+        blocks: if arguments.tiles { ExrBlocks::Tiles } else { ExrBlocks::Rows },
+    }
+}
+
+/// Writes an image in the format of its name.
+pub(crate) fn write_with(path: &Path, image: &Image, exr: ExrSettings) -> WriteResult {
+    if extension(path) == "exr" { write_exr(path, image, exr) } else { write_image(path, image) }
+}
+
 type WriteResult = std::result::Result<(), ImageError>;
 
 fn failures(paths: &[PathBuf], write: impl Fn(&Path) -> WriteResult) -> Vec<String> {
@@ -76,8 +92,8 @@ fn failures(paths: &[PathBuf], write: impl Fn(&Path) -> WriteResult) -> Vec<Stri
 
 /// Writes what took long to make: where every file fails, for example because the disk became full, it is kept in the
 /// folder of temporary files.
-pub(crate) fn write_precious(paths: &[PathBuf], image: &Image) -> Result<()> {
-    let mut failures = failures(paths, |path| write_image(path, image));
+pub(crate) fn write_precious(paths: &[PathBuf], image: &Image, exr: ExrSettings) -> Result<()> {
+    let mut failures = failures(paths, |path| write_with(path, image, exr));
     if failures.is_empty() {
         return Ok(());
     }

@@ -14,7 +14,7 @@ use crate::failure::{Failure, Result};
 use crate::load::{LoadedScene, Overrides, fingerprint, integrator_entity, load};
 use crate::progress::{CheckpointPlan, ShowProgress, Watch, catch_interruption, is_interrupted};
 use crate::stats::{RenderClock, RenderTime, Statistics};
-use crate::{metadata, outputs, report, stats};
+use crate::{metadata, outputs, preview, report, stats};
 
 /// A render, as meant: what to do, where the results go.
 struct Job {
@@ -184,7 +184,10 @@ fn write_outputs(arguments: &RenderArguments, job: &Job) -> Result<()> {
     if arguments.passes.is_some() && job.film.n_passes() > 0 {
         image.channels.extend(job.film.sums().exact_channels());
     }
-    outputs::write_precious(&job.outputs, &image)
+    if let Some(wish) = arguments.preview {
+        preview::show_radiance(&image, wish);
+    }
+    outputs::write_precious(&job.outputs, &image, outputs::exr_settings(arguments.exr))
 }
 
 fn report_faults(film: &Film) {

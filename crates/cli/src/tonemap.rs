@@ -4,13 +4,14 @@ use etendue::image::tonemap::{
     Dither, Operator, Quantization, Reinhard, ReinhardLocal, apply, automatic_exposure,
 };
 use etendue::image::{Image, srgb_encode};
-use etendue::io::images::{read_image, write_image, write_png, write_ppm};
+use etendue::io::images::{DisplayPng, read_image, write_display_png, write_image, write_png, write_ppm};
 use etendue::spectrum::cmyk::Cmyk;
 use etendue::spectrum::{ColorSpace, ColorSpaceName, Xyz, white_balance};
 
-use crate::args::{Exposure, TonemapArguments};
+use crate::args::{EncodingArgument, Exposure, TonemapArguments};
 use crate::failure::{Failure, Result};
-use crate::outputs;
+use crate::metadata::{self, COLOR_SPACE};
+use crate::{outputs, preview};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
@@ -27,8 +28,24 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
             arguments.image.display()
         )));
     }
+    let space = match arguments.encoding {
+        EncodingArgument::Srgb => ColorSpaceName::Srgb,
+        EncodingArgument::P3 => ColorSpaceName::DciP3,
+        EncodingArgument::Pq => ColorSpaceName::Rec2020,
+    };
+    if let Some(path) = arguments
+        .outputs
+        .iter()
+        .find(|path| arguments.encoding != EncodingArgument::Srgb && outputs::extension(path) != "png")
+    {
+        return Err(Failure::Usage(format!(
+            "{}: only .png tells of encodings other than sRGB",
+            path.display()
+        )));
+    }
+    convert_primaries(&mut image, space);
     if let Some(white) = arguments.white_balance {
-        balance_white(&mut image, white);
+        balance_white(&mut image, space, white);
     }
     let operator = with_options(arguments);
     let exposure = arguments.exposure.unwrap_or(match operator {
@@ -41,16 +58,31 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
             automatic_exposure(&image, arguments.key.map_or(MIDDLE_GREY, |key| key as f32))
         }
     };
-    let mapped = apply(&image, operator, stops);
+    let mapped = match (arguments.encoding, operator) {
+        // The file holds what is brighter than white too.
+        (EncodingArgument::Pq, Operator::Clamp) => scaled(&image, stops.exp2()),
+        _ => apply(&image, operator, stops),
+    };
+    if let Some(wish) = arguments.preview {
+        let mut shown = mapped.clone();
+        convert_from(&mut shown, space, ColorSpaceName::Srgb);
+        preview::show(&shown, wish);
+    }
     if arguments.cmyk {
         let inks = inks(&mapped);
         return outputs::write_all(&arguments.outputs, |path| write_image(path, &inks));
     }
     let dither = if arguments.dither { Dither::Ordered } else { Dither::None };
     let quantization = Quantization { dither, ..Quantization::default() };
-    outputs::write_all(&arguments.outputs, |path| match outputs::extension(path).as_str() {
-        "png" => write_png(path, &mapped, quantization),
-        "ppm" => write_ppm(path, &mapped, quantization),
+    let display = match arguments.encoding {
+        EncodingArgument::Srgb => None,
+        EncodingArgument::P3 => Some(DisplayPng::P3(dither)),
+        EncodingArgument::Pq => Some(DisplayPng::Pq { white_luminance: arguments.white_luminance }),
+    };
+    outputs::write_all(&arguments.outputs, |path| match (outputs::extension(path).as_str(), display) {
+        ("png", Some(display)) => write_display_png(path, &mapped, display),
+        ("png", None) => write_png(path, &mapped, quantization),
+        ("ppm", _) => write_ppm(path, &mapped, quantization),
         _ => write_image(path, &mapped),
     })
 }
@@ -74,17 +106,42 @@ fn with_options(arguments: &TonemapArguments) -> Operator {
     operator
 }
 
+/// Takes a picture to the primaries of a space from those that it states, else from those of sRGB.
+fn convert_primaries(image: &mut Image, to: ColorSpaceName) {
+    let stated = image.metadata.remove(COLOR_SPACE);
+    image.metadata.remove(metadata::CHROMATICITIES);
+    let stated = stated.and_then(|name| ColorSpaceName::ALL.into_iter().find(|space| space.name() == name));
+    convert_from(image, stated.unwrap_or(ColorSpaceName::Srgb), to);
+}
+
+/// Takes a picture from the primaries of one space to those of another; the white stays the same light.
+fn convert_from(image: &mut Image, from: ColorSpaceName, to: ColorSpaceName) {
+    if from != to {
+        let (from, to) = (ColorSpace::get(from), ColorSpace::get(to));
+        map_pixels(image, |rgb| to.to_rgb(from.to_xyz(rgb)));
+    }
+}
+
+fn map_pixels(image: &mut Image, f: impl Fn([f32; 3]) -> [f32; 3]) {
+    let pixels: Vec<[f32; 3]> = image.rgb_pixels().unwrap_or_default().into_iter().map(f).collect();
+    image.set_rgb("", &pixels);
+}
+
+fn scaled(image: &Image, factor: f32) -> Image {
+    let mut scaled = image.clone();
+    map_pixels(&mut scaled, |rgb| rgb.map(|value| value * factor));
+    scaled
+}
+
 /// Scales the responses of the eye's cones so that light of this chromaticity becomes white.
-fn balance_white(image: &mut Image, white: [f32; 2]) {
-    let space = ColorSpace::get(ColorSpaceName::Srgb);
+fn balance_white(image: &mut Image, space: ColorSpaceName, white: [f32; 2]) {
+    let space = ColorSpace::get(space);
     let target = space.to_xyz([1.0; 3]).chromaticity();
     let matrix = white_balance(white, target);
-    let pixels = image.rgb_pixels().unwrap_or_default().into_iter().map(|rgb| {
+    map_pixels(image, |rgb| {
         let xyz = space.to_xyz(rgb).to_array();
         space.to_rgb(Xyz::from(matrix.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])))
     });
-    let pixels: Vec<[f32; 3]> = pixels.collect();
-    image.set_rgb("", &pixels);
 }
 
 /// The inks of a picture, one channel each.

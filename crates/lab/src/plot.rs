@@ -17,8 +17,7 @@ use etendue_image::Image;
 use etendue_io::images::png_bytes;
 use raster::Raster;
 
-use base64::base64;
-
+pub use base64::base64;
 pub use polar::Polar;
 pub use wires::Wires;
 

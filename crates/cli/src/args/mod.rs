@@ -3,6 +3,8 @@
 mod brdf;
 mod compare;
 mod exposures;
+mod falsecolor;
+mod image;
 mod merge;
 mod photons;
 mod render;
@@ -16,12 +18,16 @@ use clap::{Parser, Subcommand};
 pub(crate) use brdf::BrdfArguments;
 pub(crate) use compare::{CompareArguments, MapArgument};
 pub(crate) use exposures::{FuseArguments, HdrArguments, ResponseArgument};
+pub(crate) use falsecolor::{
+    FalsecolorArguments, PaletteArgument, ProbeArguments, QuantityArgument, SpreadArgument,
+};
+pub(crate) use image::{ExrArguments, ImageArguments, ImageCommand, ImageConvertArguments};
 pub(crate) use merge::MergeArguments;
 pub(crate) use photons::{PhotonKindArgument, PhotonMapArgument, PhotonsArguments};
 pub(crate) use render::{RenderArguments, WavelengthArgument};
 pub(crate) use scene::{ConvertArguments, InfoArguments, ListArguments, ListKind, SceneArguments};
 pub(crate) use study::{BenchArguments, StudyArguments, StudyName};
-pub(crate) use tonemap::{Exposure, TonemapArguments};
+pub(crate) use tonemap::{EncodingArgument, Exposure, PreviewArgument, TonemapArguments};
 
 /// Physically based rendering: spectral, reproducible, honest about its error.
 #[derive(Debug, Parser)]
@@ -49,6 +55,12 @@ pub(crate) enum Command {
     Merge(MergeArguments),
     /// Turn radiance into a picture for a display
     Tonemap(TonemapArguments),
+    /// Look into a picture file, or write it in another format
+    Image(ImageArguments),
+    /// Draw a map of luminance or illuminance in false colours, with legend and contour lines
+    Falsecolor(FalsecolorArguments),
+    /// Measure illuminance and luminance at points of a scene or on a grid
+    Probe(ProbeArguments),
     /// Make a picture with linear radiance of photographs by several exposures
     Hdr(HdrArguments),
     /// Blend photographs by several exposures into one picture, without radiance

@@ -6,6 +6,8 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 
+use super::image::ExrArguments;
+use super::tonemap::PreviewArgument;
 use super::values::{parse_duration, parse_positive, parse_resolution};
 
 /// Arguments of `render`.
@@ -64,6 +66,12 @@ pub(crate) struct RenderArguments {
     /// Write statistics as JSON
     #[arg(long, value_name = "FILE")]
     pub(crate) stats: Option<PathBuf>,
+    /// How .exr outputs are written
+    #[command(flatten)]
+    pub(crate) exr: ExrArguments,
+    /// Show the picture in the terminal at the end, if standard output is one that can; or name the protocol
+    #[arg(long, value_enum, value_name = "PROTOCOL", num_args = 0..=1, require_equals = true, default_missing_value = "auto")]
+    pub(crate) preview: Option<PreviewArgument>,
     /// Print errors alone
     #[arg(short, long)]
     pub(crate) quiet: bool,

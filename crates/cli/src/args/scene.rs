@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 /// Arguments of `info`.
 #[derive(Args, Debug)]
 pub(crate) struct InfoArguments {
-    /// Scene file
+    /// Scene file, photon map or picture
     pub(crate) scene: PathBuf,
     /// Print one JSON object
     #[arg(long)]

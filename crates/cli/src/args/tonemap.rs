@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use etendue::image::tonemap::Operator;
 use etendue::spectrum::chromaticity_of_temperature;
 
@@ -38,6 +38,41 @@ pub(crate) struct TonemapArguments {
     /// Write inks: channels C, M, Y and K of an .exr, of the encoded colour, without a profile
     #[arg(long, conflicts_with = "dither")]
     pub(crate) cmyk: bool,
+    /// Colours and transfer curve of .png outputs
+    #[arg(long, value_enum, default_value = "srgb", conflicts_with = "cmyk")]
+    pub(crate) encoding: EncodingArgument,
+    /// Luminance in cd/m² that white has with --encoding pq
+    #[arg(long, value_name = "CD/M2", default_value = "203", value_parser = parse_peak, allow_negative_numbers = true)]
+    pub(crate) white_luminance: f32,
+    /// Show the picture in the terminal, if standard output is one that can; or name the protocol
+    #[arg(long, value_enum, value_name = "PROTOCOL", num_args = 0..=1, require_equals = true, default_missing_value = "auto")]
+    pub(crate) preview: Option<PreviewArgument>,
+}
+
+/// Colours and transfer curve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EncodingArgument {
+    /// sRGB, 8 bits
+    Srgb,
+    /// Display P3, 8 bits, for what lies outside of sRGB
+    P3,
+    /// Rec. 2020 with the PQ curve, 16 bits, for displays of high dynamic range
+    Pq,
+}
+
+/// How a picture is shown in a terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PreviewArgument {
+    /// As the environment tells; nothing where standard output is no terminal
+    Auto,
+    /// Kitty's graphics protocol
+    Kitty,
+    /// Inline images of iTerm2
+    Iterm,
+    /// Sixels
+    Sixel,
+    /// Half blocks in 24-bit colour
+    Blocks,
 }
 
 /// How bright a picture is shown.
@@ -66,6 +101,12 @@ fn parse_exposure(text: &str) -> Result<Exposure, String> {
         Ok(stops) if stops.abs() <= 100.0 => Ok(Exposure::Stops(stops)),
         _ => Err("stops between -100 and 100, or 'auto', are needed".to_owned()),
     }
+}
+
+/// PQ ends at 10,000 cd/m².
+fn parse_peak(text: &str) -> Result<f32, String> {
+    let value = text.parse::<f32>().ok().filter(|value| *value > 0.0 && *value <= 10_000.0);
+    value.ok_or_else(|| "a luminance above 0, at most 10000, is needed".to_owned())
 }
 
 /// A chromaticity from two numbers or a colour temperature.

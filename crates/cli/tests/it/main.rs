@@ -12,6 +12,7 @@ mod lights;
 mod listing;
 mod outputs;
 mod parts;
+mod pictures;
 mod real_scenes;
 mod references;
 mod scenes;

@@ -1,0 +1,113 @@
+//! `etendue falsecolor`: maps of luminance and illuminance for lighting reports.
+
+use etendue::image::Image;
+use etendue::image::falsecolor::{FalseColors, Palette, Scale, Spread};
+use etendue::io::images::{read_image, write_image};
+use serde_json::json;
+
+use crate::args::{FalsecolorArguments, PaletteArgument, QuantityArgument, SpreadArgument};
+use crate::failure::{Failure, Result};
+use crate::list::print;
+use crate::{metadata, outputs, report};
+
+/// Metadata key for the unit of a picture's values.
+pub(crate) const UNIT: &str = "etendue.unit";
+/// What `probe` writes there.
+pub(crate) const LUX: &str = "lx";
+
+/// Runs the command.
+pub(crate) fn run(arguments: &FalsecolorArguments) -> Result<()> {
+    outputs::check_images(&arguments.outputs)?;
+    let image = read_image(&arguments.image).map_err(|error| Failure::Usage(error.to_string()))?;
+    let refuse = |message: &str| Failure::Usage(format!("{}: {message}", arguments.image.display()));
+    let mut values = photometric(&image).ok_or_else(|| refuse("there are no channels R, G, B or Y"))?;
+    let is_lux = image.metadata.get(UNIT).is_some_and(|unit| unit == LUX);
+    let default = if is_lux || arguments.reflectance.is_some() {
+        QuantityArgument::Illuminance
+    } else {
+        QuantityArgument::Luminance
+    };
+    let quantity = arguments.quantity.unwrap_or(default);
+    let factor = match (quantity, is_lux, arguments.reflectance) {
+        (QuantityArgument::Luminance, false, None) | (QuantityArgument::Illuminance, true, None) => 1.0,
+        (QuantityArgument::Illuminance, false, Some(reflectance)) => std::f64::consts::PI / reflectance,
+        (QuantityArgument::Illuminance, false, None) => {
+            let message = "illuminance follows from luminance where the surfaces' --reflectance is known; or let `etendue probe --grid` measure it";
+            return Err(refuse(message));
+        }
+        (QuantityArgument::Luminance, _, Some(_)) => {
+            return Err(refuse("--reflectance is for illuminance from luminance"));
+        }
+        (_, true, _) => return Err(refuse("this picture holds illuminance, not luminance")),
+    } * arguments.multiply;
+    values.iter_mut().for_each(|value| *value = (f64::from(*value) * factor) as f32);
+    let tells_unit = [UNIT, metadata::WHITE_LUMINANCE].iter().any(|key| image.metadata.contains_key(*key));
+    if arguments.multiply == 1.0 && !tells_unit {
+        report::warning(&format!(
+            "{}: it does not tell the unit of its values, which are taken for cd/m²; see --multiply",
+            arguments.image.display()
+        ));
+    }
+    let unit = if quantity == QuantityArgument::Luminance { "cd/m²" } else { "lx" };
+    let colors = FalseColors {
+        scale: scale(arguments, &values)?,
+        palette: match arguments.palette {
+            PaletteArgument::Spectrum => Palette::Spectrum,
+            PaletteArgument::Heat => Palette::Heat,
+            PaletteArgument::Gray => Palette::Gray,
+        },
+        contours: !arguments.no_contours,
+        unit: (!arguments.no_legend).then(|| unit.to_owned()),
+    };
+    let picture = colors.draw(&values, image.width);
+    outputs::write_all(&arguments.outputs, |path| write_image(path, &picture))?;
+    print_statistics(&values, unit, arguments.json);
+    Ok(())
+}
+
+/// Luminance or what else a picture holds, by the weights and the exposure that it states.
+fn photometric(image: &Image) -> Option<Vec<f32>> {
+    if let (None, Some(y)) = (image.channel("R"), image.channel("Y")) {
+        return Some(y.values.clone());
+    }
+    let weights = metadata::numbers::<f32, 3>(image, metadata::LUMINANCE).unwrap_or([0.2126, 0.7152, 0.0722]);
+    let white = metadata::numbers::<f32, 1>(image, metadata::WHITE_LUMINANCE).map_or(1.0, |[white]| white);
+    let white = if white > 0.0 && white.is_finite() { white } else { 1.0 };
+    let luminance = |p: [f32; 3]| (p[0] * weights[0] + p[1] * weights[1] + p[2] * weights[2]) * white;
+    Some(image.rgb_pixels()?.into_iter().map(luminance).collect())
+}
+
+fn scale(arguments: &FalsecolorArguments, values: &[f32]) -> Result<Scale> {
+    let spread = match arguments.scale {
+        SpreadArgument::Auto => None,
+        SpreadArgument::Linear => Some(Spread::Linear),
+        SpreadArgument::Log => Some(Spread::Logarithmic),
+    };
+    let Some([low, high]) = arguments.range else { return Ok(Scale::fitting(values, spread)) };
+    let refuse = || Failure::Usage("--range: a logarithmic scale starts above 0".to_owned());
+    Scale::new(spread.unwrap_or(Spread::Linear), low, high).ok_or_else(refuse)
+}
+
+/// What a lighting report states of a field: least, mean and largest value, and the least over the mean (uniformity).
+fn print_statistics(values: &[f32], unit: &str, as_json: bool) {
+    let finite: Vec<f64> = values.iter().filter(|v| v.is_finite()).map(|v| f64::from(*v)).collect();
+    let n_masked = values.len() - finite.len();
+    let mean = finite.iter().sum::<f64>() / finite.len() as f64;
+    let min = finite.iter().copied().fold(f64::INFINITY, f64::min);
+    let max = finite.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let uniformity = min / mean;
+    if as_json {
+        let object = json!({
+            "unit": unit, "min": min, "mean": mean, "max": max, "uniformity": uniformity, "masked": n_masked,
+        });
+        print(&object.to_string());
+        return;
+    }
+    for (name, value) in [("min", min), ("mean", mean), ("max", max)] {
+        print(&format!("{name:<12}{value:.6} {unit}"));
+    }
+    print(&format!("min / mean  {uniformity:.6}"));
+    if n_masked > 0 {
+        print(&format!("masked      {n_masked} of {} pixels are not finite", values.len()));
+    }
+}
