@@ -1,7 +1,7 @@
 //! `etendue falsecolor`: maps of luminance and illuminance for lighting reports.
 
 use etendue::image::Image;
-use etendue::image::falsecolor::{FalseColors, Palette, Scale, Spread};
+use etendue::image::falsecolor::{FalseColors, Palette, Scale, Spread, enlarged};
 use etendue::io::images::{read_image, write_image};
 use serde_json::json;
 
@@ -14,6 +14,9 @@ use crate::{metadata, outputs, report};
 pub(crate) const UNIT: &str = "etendue.unit";
 /// What `probe` writes there.
 pub(crate) const LUX: &str = "lx";
+
+/// Longer side in pixels that maps of fewer are enlarged to, about.
+const LEAST_SIDE: usize = 360;
 
 /// Runs the command.
 pub(crate) fn run(arguments: &FalsecolorArguments) -> Result<()> {
@@ -59,7 +62,9 @@ pub(crate) fn run(arguments: &FalsecolorArguments) -> Result<()> {
         contours: !arguments.no_contours,
         unit: (!arguments.no_legend).then(|| unit.to_owned()),
     };
-    let picture = colors.draw(&values, image.width);
+    // Grids of few fields become large enough to read.
+    let factor = (LEAST_SIDE / image.width.max(image.height)).max(1);
+    let picture = colors.draw(&enlarged(&values, image.width, factor), factor * image.width);
     outputs::write_all(&arguments.outputs, |path| write_image(path, &picture))?;
     print_statistics(&values, unit, arguments.json);
     Ok(())

@@ -53,9 +53,22 @@ pub(crate) fn info(path: &Path, as_json: bool) -> Result<()> {
     if as_json {
         print(&description.to_string());
     } else {
+        let channels = description.as_object_mut().and_then(|object| object.remove("channels"));
         print_lines("", &description);
+        for channel in channels.iter().filter_map(Value::as_array).flatten() {
+            print_channel(channel);
+        }
     }
     Ok(())
+}
+
+/// One line for people.
+fn print_channel(channel: &Value) {
+    let number = |key: &str| channel[key].as_f64().map_or("-".to_owned(), |value| format!("{value:.6}"));
+    let [min, mean, max] = ["min", "mean", "max"].map(number);
+    let (name, nan, infinite) =
+        (channel["name"].as_str().unwrap_or_default(), &channel["nan"], &channel["infinite"]);
+    print(&format!("channel {name}: min {min}, mean {mean}, max {max}, {nan} NaN, {infinite} infinite"));
 }
 
 fn count(image: &Image, is: impl Fn(&f32) -> bool) -> usize {

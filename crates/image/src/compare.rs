@@ -26,6 +26,7 @@ pub use crate::box_downsample;
 use crate::{Image, srgb_encode};
 pub use difference::{DifferenceKind, DifferenceMap};
 pub(crate) use difference::{HEAT_RAMP, ramp_color};
+pub(crate) use flip::convolve;
 pub use views::{side_by_side, split};
 pub use z_test::{BEYOND, VARIANCE, ZTest};
 

@@ -6,7 +6,7 @@
 
 mod font;
 
-use crate::compare::ramp_color;
+use crate::compare::{convolve, ramp_color};
 use crate::{Image, srgb_decode};
 
 /// How values are spread over the colours.
@@ -195,9 +195,11 @@ impl FalseColors {
         }
     }
 
-    /// Darkens or lightens the pixels whose right or lower neighbour lies beyond a tick.
+    /// Darkens or lightens the pixels whose right or lower neighbour lies beyond a tick. Values are averaged before, so that lines
+    /// do not follow the noise.
     fn draw_contours(&self, values: &[f32], width: usize, pixels: &mut [[f32; 3]]) {
         let ticks = self.scale.ticks();
+        let values = smooth(values, width);
         let band = |index: usize| {
             let value = f64::from(values[index]);
             value.is_finite().then(|| ticks.partition_point(|tick| *tick <= value))
@@ -254,6 +256,50 @@ impl FalseColors {
         }
         Image::rgb(width, height, canvas.pixels)
     }
+}
+
+/// Standard deviation of the average before contours are drawn, as a share of the longer side.
+const CONTOUR_BLUR: f64 = 0.006;
+
+/// Values averaged over neighbours by a Gaussian, those that are not finite left out; NaN where there is none.
+fn smooth(values: &[f32], width: usize) -> Vec<f32> {
+    let deviation = CONTOUR_BLUR * width.max(values.len() / width) as f64;
+    let radius = (3.0 * deviation).ceil() as i64;
+    let weight = |x: i64| (-(x * x) as f64 / (2.0 * deviation * deviation)).exp();
+    let window: Vec<f64> = (-radius..=radius).map(weight).collect();
+    let blurred = |f: fn(f32) -> f32| {
+        let plane: Vec<f32> =
+            values.iter().map(|value| if value.is_finite() { f(*value) } else { 0.0 }).collect();
+        convolve(&plane, width, &window, &window)
+    };
+    let (sums, weights) = (blurred(|value| value), blurred(|_| 1.0));
+    sums.iter().zip(weights).map(|(sum, weight)| sum / weight).collect()
+}
+
+/// Values at `factor` times as many places across and down, interpolated between the middles of pixels: for grids of few fields.
+///
+/// # Panics
+/// When the factor is zero, or there are not whole rows of values.
+#[must_use]
+pub fn enlarged(values: &[f32], width: usize, factor: usize) -> Vec<f32> {
+    assert!(factor > 0 && width > 0 && values.len().is_multiple_of(width), "whole rows of values");
+    let height = values.len() / width;
+    // The pixel before a place, the one behind it, and how far it is from the first.
+    let neighbours = |i: usize, n: usize| {
+        let place = ((i as f32 + 0.5) / factor as f32 - 0.5).clamp(0.0, (n - 1) as f32);
+        let first = place as usize;
+        (first, (first + 1).min(n - 1), place - first as f32)
+    };
+    let mut large = Vec::with_capacity(values.len() * factor * factor);
+    for y in 0..height * factor {
+        let (top, bottom, v) = neighbours(y, height);
+        for x in 0..width * factor {
+            let (left, right, u) = neighbours(x, width);
+            let row = |y: usize| (1.0 - u) * values[y * width + left] + u * values[y * width + right];
+            large.push((1.0 - v) * row(top) + v * row(bottom));
+        }
+    }
+    large
 }
 
 /// A tick in as few letters as it takes.

@@ -163,7 +163,7 @@ fn balanced(kernel: Vec<f64>) -> Vec<f64> {
 }
 
 /// Correlates rows with one kernel and columns with another; pixels beyond the border repeat it.
-pub(super) fn convolve(plane: &[f32], width: usize, along_x: &[f64], along_y: &[f64]) -> Vec<f32> {
+pub(crate) fn convolve(plane: &[f32], width: usize, along_x: &[f64], along_y: &[f64]) -> Vec<f32> {
     let height = plane.len() / width;
     let radius = along_x.len() / 2;
     let mut rows = vec![0.0f64; plane.len()];

@@ -76,7 +76,31 @@ fn contours() {
     let changed: Vec<usize> = (0..100).filter(|&i| with[i] != without[i]).collect();
     assert_eq!(changed, (1..10).map(|k| 10 * k - 1).collect::<Vec<_>>());
     // NaN has no contour.
-    FalseColors { contours: true, ..plain(scale) }.draw(&[f32::NAN, 1.0, f32::NAN, 90.0], 2);
+    let _ = FalseColors { contours: true, ..plain(scale) }.draw(&[f32::NAN, 1.0, f32::NAN, 90.0], 2);
+}
+
+/// Contours of noise around a step are one line along the step.
+#[test]
+fn contours_ignore_noise() {
+    let value = |x: usize, y: usize| {
+        let noise = (x as u32).wrapping_mul(2_654_435_761) ^ (y as u32).wrapping_mul(2_246_822_519);
+        40.0 + 20.0 * x as f32 / 199.0 + ((noise >> 13) % 100) as f32 / 100.0 - 0.5
+    };
+    let values: Vec<f32> = (0..200 * 100).map(|i| value(i % 200, i / 200)).collect();
+    let scale = Scale::new(Spread::Linear, 0.0, 100.0).expect("a scale");
+    let with =
+        FalseColors { contours: true, ..plain(scale) }.draw(&values, 200).rgb_pixels().expect("colour");
+    let without = plain(scale).draw(&values, 200).rgb_pixels().expect("colour");
+    let changed = (0..values.len()).filter(|&i| with[i] != without[i]);
+    // 40 at the left border, 50 in the middle, 60 at the right one.
+    assert!(changed.map(|i| i % 200).all(|x| x < 12 || (88..112).contains(&x) || x > 187));
+}
+
+/// Enlarged fields are interpolated between their middles, and keep their mean.
+#[test]
+fn enlarged_fields() {
+    assert_eq!(enlarged(&[1.0, 3.0], 2, 2), [1.0, 1.5, 2.5, 3.0, 1.0, 1.5, 2.5, 3.0]);
+    assert_eq!(enlarged(&[7.0], 1, 3), [7.0; 9]);
 }
 
 /// A legend stands at the right of the map, which it leaves as it is; its bar has all colours from high to low.
