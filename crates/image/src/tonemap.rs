@@ -159,7 +159,8 @@ fn map_by_surroundings(operator: Operator, width: usize, pixels: &mut [[f32; 3]]
             (operator.map(&plane.map(f32::log10)).map(|shown| 10_f32.powf(shown)), 1.0)
         }
         Operator::Gradient(operator) => {
-            (shown_range(&operator.map(&plane.map(f32::ln))), operator.saturation)
+            let ln = plane.map(f32::ln);
+            (shown_range(&operator.map(&ln), &ln), operator.saturation)
         }
         Operator::Histogram(operator) => {
             let ln = plane.map(f32::ln);
@@ -188,13 +189,26 @@ fn recoloured(pixel: [f32; 3], l: f64, shown: f32, saturation: f32) -> [f32; 3] 
     })
 }
 
-/// Luminances of logarithms that are known up to a constant: the brightest but 1 % become white.
-fn shown_range(ln: &Plane) -> Plane {
-    let mut sorted = ln.values.clone();
-    let index = (sorted.len() - 1) * 99 / 100;
-    let (_, white, _) = sorted.select_nth_unstable_by(index, f32::total_cmp);
-    let white = *white;
-    ln.map(|value| (value - white).exp().min(1.0))
+/// Contrast of a display as a natural logarithm: 100 to 1.
+const DISPLAY_RANGE: f32 = 4.605;
+
+/// Luminances of logarithms that are known up to a constant and, since all gradients may have been weakened alike, a factor: the
+/// brightest but 1 % become white, and the range is widened until it is the display's or the world's.
+fn shown_range(ln: &Plane, world: &Plane) -> Plane {
+    let ([black, white], [world_black, world_white]) = (ends(ln), ends(world));
+    let range = white - black;
+    let widening =
+        if range > 0.0 { (DISPLAY_RANGE.min(world_white - world_black) / range).max(1.0) } else { 1.0 };
+    ln.map(|value| ((value - white) * widening).exp().min(1.0))
+}
+
+/// The values that 1 % and 99 % of the pixels do not exceed.
+fn ends(ln: &Plane) -> [f32; 2] {
+    let mut values = ln.values.clone();
+    [1, 99].map(|percent| {
+        let index = (values.len() - 1) * percent / 100;
+        *values.select_nth_unstable_by(index, f32::total_cmp).1
+    })
 }
 
 /// Logarithmic average luminance `exp(mean(log(delta + L)))` of the finite pixels, without those that are black if `delta` is

@@ -358,6 +358,24 @@ fn gradients_keep_their_signs() {
     assert!(n > 5000 && n_kept >= n - n / 200, "{n_kept} of {n}");
 }
 
+/// The gradient operator uses the display's range where the world has more, and shows no more contrast than the world where it has less.
+#[test]
+fn compressed_gradients_fill_the_display() {
+    for (decades, expected) in [(4.0, 2.0), (3.0, 2.0), (1.0, 1.0)] {
+        let image = Image::from_fn(200, 150, |x, y| {
+            [10_f32.powf(decades * 0.5 * ((x as f32 * 0.05).sin() + 0.1 * (y as f32 * 0.9).sin())); 3]
+        });
+        let mut shown: Vec<f32> =
+            mapped(&image, Operator::Gradient(Gradient { saturation: 1.0, ..Gradient::default() }), 0.0)
+                .iter()
+                .map(|pixel| pixel[1].log10())
+                .collect();
+        shown.sort_by(f32::total_cmp);
+        let range = shown[29_700] - shown[300];
+        assert!((range / expected - 1.0).abs() < 0.12, "{range} of {expected} decades");
+    }
+}
+
 /// Histogram adjustment is monotone, never shows more contrast than the world, and shows a world of little contrast as it is.
 #[test]
 fn histogram_adjustment_exaggerates_nothing() {
