@@ -3,6 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use etendue::lab::contest::{
+    Contest, ContestSettings, caustic, contest, photon_counts, seen_directly, two_passes,
+};
 use etendue::lab::estimates::{
     ConsistencySettings, CurveStudy, EdgeSettings, GatheringSettings, HandleSettings, WallSettings,
     consistency, edge, gathering, handle, walls,
@@ -90,6 +93,16 @@ fn measure(arguments: &StudyArguments) -> Result<(&'static str, String, String, 
             let study = photon_emission(&settings, &mut note);
             ("photon-emission", study.csv(), study.svg(), study.summary())
         }
+        StudyName::PhotonCaustic => contests("photon-caustic", caustic, arguments)?,
+        StudyName::PhotonView => contests("photon-view", seen_directly, arguments)?,
+        StudyName::PhotonPasses => contests("photon-passes", two_passes, arguments)?,
+        StudyName::PhotonCounts => {
+            let (settings, levels) = (contest_settings(arguments), if quick { 6 } else { 8 });
+            let study = in_one_thread(|| {
+                photon_counts(&settings, levels, &thread_time, &mut |what| report::note(what))
+            })?;
+            ("photon-counts", study.csv(), study.svg(), study.summary())
+        }
         StudyName::Neighbours => {
             let settings = if quick { NeighbourSettings::quick(seed) } else { NeighbourSettings::full(seed) };
             let study =
@@ -101,6 +114,26 @@ fn measure(arguments: &StudyArguments) -> Result<(&'static str, String, String, 
 
 fn curves(name: &'static str, study: CurveStudy) -> (&'static str, String, String, String) {
     (name, study.csv(), study.svg(), study.summary)
+}
+
+fn contest_settings(arguments: &StudyArguments) -> ContestSettings {
+    if arguments.quick {
+        ContestSettings::quick(arguments.seed)
+    } else {
+        ContestSettings::full(arguments.seed)
+    }
+}
+
+/// Runs methods beside each other.
+fn contests(
+    name: &'static str,
+    of: fn(&ContestSettings) -> Vec<Contest>,
+    arguments: &StudyArguments,
+) -> Result<(&'static str, String, String, String)> {
+    let settings = contest_settings(arguments);
+    let study =
+        in_one_thread(|| contest(&of(&settings), &settings, &thread_time, &mut |what| report::note(what)))?;
+    Ok((name, study.csv(), study.svg(), study.summary()))
 }
 
 /// Runs a study in one thread, whose processor time is then that of all the work.

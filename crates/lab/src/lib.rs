@@ -9,6 +9,7 @@ pub mod scenes;
 
 pub mod accelerators;
 pub mod brdf;
+pub mod contest;
 pub mod convergence;
 pub mod estimates;
 pub mod light_size;

@@ -46,13 +46,19 @@ impl Reference {
     /// Renders with the scene's own method and Sobol points.
     pub(crate) fn render(scene: &StudyScene, settings: ReferenceSettings, seed: u64) -> Self {
         let estimator = Estimator::of_sampler(SamplerChoice::Sobol);
-        let runs: Vec<Vec<f64>> = (0..settings.n_scrambles)
+        let images: Vec<Image> = (0..settings.n_scrambles)
             .into_par_iter()
             .map(|k| {
                 let seed = hash64(&[seed, Purpose::Reference as u64, u64::from(k)]);
-                colors(&estimator.images(scene, seed, &[settings.n_samples])[0])
+                estimator.images(scene, seed, &[settings.n_samples]).remove(0)
             })
             .collect();
+        Self::of_images(&images)
+    }
+
+    /// The mean of independent renders of the same expectation, at least two.
+    pub(crate) fn of_images(images: &[Image]) -> Self {
+        let runs: Vec<Vec<f64>> = images.iter().map(colors).collect();
         let n = runs.len() as f64;
         let indices = 0..runs[0].len();
         let values: Vec<f64> = indices.map(|i| runs.iter().map(|run| run[i]).sum::<f64>() / n).collect();
@@ -66,6 +72,11 @@ impl Reference {
     /// Mean over pixels and channels.
     pub(crate) fn mean(&self) -> f64 {
         mean(self.values.iter().copied())
+    }
+
+    /// Mean over pixels and channels of a picture, to compare with [`Self::mean`].
+    pub(crate) fn mean_of(&self, image: &Image) -> f64 {
+        mean(colors(image).into_iter())
     }
 
     /// Standard error: root mean square over pixels and channels.

@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use etendue_io::{load_assets, read_pbrt_str};
-use etendue_scene::document::{Document, Entity, Parameter, Value};
+use etendue_scene::document::{Document, EmbeddedFile, Entity, Parameter, Value};
 use etendue_scene::{Assets, Scene};
+
+use crate::generate::Generator;
 
 /// A scene to experiment with.
 #[derive(Clone, Debug)]
@@ -41,11 +43,36 @@ impl StudyScene {
         Self::of_text("Cornell box", include_str!("../../../scenes/cornell.pbrt"))
     }
 
+    /// A scene of the notebook with these parameters, its files in memory.
+    ///
+    /// # Panics
+    /// If there is no such scene or a parameter is in error.
+    #[must_use]
+    pub fn generated(name: &str, parameters: &[(&str, &str)]) -> Self {
+        let files =
+            Generator::find(name).and_then(|generator| generator.generate(parameters.iter().copied()));
+        let mut files = files.unwrap_or_else(|error| panic!("{error}")).0.into_iter();
+        let text =
+            files.next().map(|main| String::from_utf8_lossy(&main.bytes).into_owned()).unwrap_or_default();
+        let mut document = Self::document(name, &text);
+        document.embedded.extend(files.map(|file| (file.name, EmbeddedFile::Bytes(file.bytes.into()))));
+        Self::new(name, document)
+    }
+
     /// A scene of this crate.
     pub(crate) fn of_text(name: &str, text: &str) -> Self {
+        Self::new(name, Self::document(name, text))
+    }
+
+    fn document(name: &str, text: &str) -> Document {
         let (document, diagnostics) = read_pbrt_str(name, text, Path::new(""));
         assert!(!diagnostics.has_errors(), "the scene \"{name}\" is part of this crate and reads");
-        Self::new(name, document)
+        document
+    }
+
+    /// What the scene says of its method.
+    pub(crate) fn integrator(self) -> Entity {
+        self.document.integrator.unwrap_or_else(|| Entity::new("path"))
     }
 
     /// The same scene in another resolution, in pixels across and down.

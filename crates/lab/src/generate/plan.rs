@@ -1,44 +1,56 @@
-//! A drawing of points in the plane: the cells of their kd-tree beside those of Voronoi (SPEC SCENE-39).
+//! A drawing of points in the plane: the cells of their kd-tree beside those of Voronoi, as a scene and as SVG (SPEC SCENE-39,
+//! KD-2).
 
 use std::fmt::Write;
 
 use etendue_math::Rng;
 
-use super::settings::{SEED, count};
+use super::settings::{SEED, choice, count};
 use super::text::{Frame, numbers};
 use super::{Files, Generator, Settings};
+use crate::neighbours::Distribution;
 
 /// The drawing.
 pub(super) const GENERATOR: Generator = Generator {
     name: "voronoi",
     id: "SCENE-39",
     doc: "the kd-tree and the Voronoi diagram of the same points of the plane",
-    parameters: &[count("points", "60", [1, 2000], "number of points"), SEED],
+    parameters: &[
+        count("points", "60", [1, 2000], "number of points"),
+        choice("photons", "even", &["even", "caustic"], "where points are: anywhere, or as photons in a cup"),
+        SEED,
+    ],
     generate,
 };
 
 type Point = [f32; 2];
 
 fn generate(settings: &Settings) -> Files {
-    let mut rng = Rng::new(u64::from(settings.count("seed")), 0);
-    let points: Vec<Point> =
-        (0..settings.count("points")).map(|_| [0, 1].map(|_| 0.02 + 0.96 * rng.next_f32())).collect();
+    let seed = u64::from(settings.count("seed"));
+    let mut rng = Rng::new(seed, 0);
+    let n = settings.count("points");
+    let points: Vec<Point> = if settings.word("photons") == "caustic" {
+        let photons = Distribution::Caustic.photons(n as usize, seed);
+        photons.into_iter().map(|p| [p.x, p.z].map(|at| 0.5 + 0.96 * at)).collect()
+    } else {
+        (0..n).map(|_| [0, 1].map(|_| 0.02 + 0.96 * rng.next_f32())).collect()
+    };
     let frame = Frame { name: "voronoi", resolution: [800, 400], exposure_s: 1.0, samples: 64, max_depth: 2 };
     let mut world = String::new();
     let mut lines = Vec::new();
     kd_tree(&mut points.clone(), [[0.0, 0.0], [1.0, 1.0]], &mut lines);
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     lines.extend((0..4).map(|k| [corners[k], corners[(k + 1) % 4]]));
-    for [a, b] in lines {
-        line(&mut world, shift(a, -1.05), shift(b, -1.05));
+    let cells: Vec<Vec<Point>> = (0..points.len()).map(|index| voronoi_cell(index, &points)).collect();
+    for [a, b] in &lines {
+        line(&mut world, shift(*a, -1.05), shift(*b, -1.05));
     }
-    for (index, point) in points.iter().enumerate() {
-        cell(&mut world, &voronoi_cell(index, &points), &mut rng);
+    for (point, polygon) in points.iter().zip(&cells) {
+        cell(&mut world, polygon, &mut rng);
         for x in [-1.05, 0.05] {
             dot(&mut world, shift(*point, x));
         }
     }
-    let n = points.len();
     let text = format!(
         r#"# The kd-tree of {n} points of the plane (left) and the cells of Voronoi of the same points (right) (SPEC SCENE-39).
 #
@@ -57,7 +69,31 @@ Shape "bilinearmesh" "point3 P" [ -9 -9 0  9 -9 0  -9 9 0  9 9 0 ]
 {world}"#,
         frame = frame.text(),
     );
-    Files::of_text("voronoi", text)
+    Files::of_text("voronoi", text).with_bytes("voronoi.svg", svg(&points, &lines, &cells).into_bytes())
+}
+
+/// The same drawing in lines.
+fn svg(points: &[Point], lines: &[[Point; 2]], cells: &[Vec<Point>]) -> String {
+    let mut text = String::from(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-1.1 -1.05 2.2 1.1\" width=\"880\" height=\"440\">\n\
+         <rect x=\"-1.1\" y=\"-1.05\" width=\"2.2\" height=\"1.1\" fill=\"white\"/>\n\
+         <g fill=\"none\" stroke=\"#888\" stroke-width=\"0.002\">\n",
+    );
+    for [a, b] in lines {
+        let [a, b] = [a, b].map(|p| shift(*p, -1.05));
+        let _ = writeln!(text, "<path d=\"M{:.4} {:.4}L{:.4} {:.4}\"/>", a[0], -a[1], b[0], -b[1]);
+    }
+    for cell in cells {
+        let corners: Vec<String> = cell.iter().map(|[x, y]| format!("{:.4},{:.4}", x + 0.05, -y)).collect();
+        let _ = writeln!(text, "<polygon points=\"{}\"/>", corners.join(" "));
+    }
+    text += "</g>\n<g fill=\"#d55e00\">\n";
+    for [x, y] in points {
+        for by in [-1.05, 0.05] {
+            let _ = writeln!(text, "<circle cx=\"{:.4}\" cy=\"{:.4}\" r=\"0.005\"/>", x + by, -y);
+        }
+    }
+    text + "</g>\n</svg>\n"
 }
 
 fn shift([x, y]: Point, by: f32) -> Point {
@@ -170,4 +206,39 @@ fn dot(world: &mut String, [x, y]: Point) {
         "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.02 0.02 ]\nAttributeBegin\n  Translate {x} {y} 0.03\n  Shape \"disk\" \
          \"float radius\" [ 0.009 ]\nAttributeEnd\n"
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Cells of Voronoi are as many as points, each holds its own, and together they fill the square; both drawings have all of it.
+    #[test]
+    fn cells_fill_the_square() {
+        for photons in ["even", "caustic"] {
+            let files = GENERATOR.generate([("photons", photons), ("points", "40")]);
+            let files = files.unwrap_or_else(|error| panic!("{error}")).0;
+            let svg = String::from_utf8_lossy(&files[1].bytes).into_owned();
+            assert_eq!(svg.matches("<polygon").count(), 40);
+            assert_eq!(svg.matches("<circle").count(), 80);
+            assert_eq!(svg.matches("<path").count(), 40 + 4, "a cut for each point, and the border");
+            let mut sum = 0.0;
+            for polygon in svg.split("points=\"").skip(1) {
+                let corners: Vec<Point> =
+                    polygon.split('"').next().unwrap_or_default().split(' ').map(point).collect();
+                let area = |k: usize| {
+                    let ([a, b], [c, d]) = (corners[k], corners[(k + 1) % corners.len()]);
+                    0.5 * (a * d - b * c)
+                };
+                sum += (0..corners.len()).map(area).sum::<f32>().abs();
+            }
+            // Corners have four digits.
+            assert!((sum - 1.0).abs() < 5e-3, "{sum}");
+        }
+    }
+
+    fn point(text: &str) -> Point {
+        let numbers: Vec<f32> = text.split(',').map(|n| n.parse().expect("a number")).collect();
+        [numbers[0], numbers[1]]
+    }
 }

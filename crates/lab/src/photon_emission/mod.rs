@@ -8,8 +8,11 @@
 //! - **Absorption**: roulette, weaker photons, or branching, in a room of varnished walls; how the power of photons is
 //!   distributed, and the error for the rays that it takes.
 
+mod looks;
+
 use std::fmt::Write;
 
+use etendue_image::Image;
 use etendue_math::hash64;
 use etendue_scene::Scene;
 use etendue_transport::photon::{
@@ -104,7 +107,8 @@ struct Found {
     cells: Vec<f64>,
     /// Sum, and sum of squares, of the flux of photons at surfaces that maps are for.
     powers: [f64; 2],
-    n_stored: u64,
+    /// The flux of each.
+    lumens: Vec<f32>,
     n_rays: u64,
 }
 
@@ -138,7 +142,7 @@ fn run(scene: &Scene, emitter: &PhotonEmitter, walk: &PhotonWalk, n: u64, place:
     let mut found = Found {
         cells: vec![0.0; N_CELLS * N_CELLS],
         powers: [0.0; 2],
-        n_stored: stored.len() as u64,
+        lumens: stored.iter().map(|(_, lumens)| *lumens).collect(),
         n_rays: rays.closest,
     };
     for (cell, lumens) in stored {
@@ -186,6 +190,8 @@ pub struct AbsorptionRow {
     pub deviation: f64,
     /// Relative error of the floor.
     pub error: f64,
+    /// How power is distributed: power over the mean, and share of photons within half a decade around it.
+    pub shares: Vec<[f64; 2]>,
 }
 
 impl AbsorptionRow {
@@ -203,6 +209,8 @@ pub struct EmissionStudy {
     pub patterns: Vec<PatternCurve>,
     /// Ways to treat absorption.
     pub absorption: Vec<AbsorptionRow>,
+    /// The caustic as each pattern draws it.
+    pub pictures: Vec<(&'static str, Image)>,
 }
 
 /// Runs the study. `progress` hears of each part before it is measured.
@@ -229,7 +237,8 @@ pub fn photon_emission(settings: &EmissionStudySettings, progress: &mut dyn FnMu
         }
     }
     progress("absorption");
-    EmissionStudy { patterns, absorption: absorption(settings) }
+    let absorption = absorption(settings);
+    EmissionStudy { patterns, absorption, pictures: looks::caustics(settings.seed) }
 }
 
 fn walk(scene: &Scene, pattern: PhotonPattern, absorption: Absorption, max_depth: u32) -> PhotonWalk {
@@ -268,18 +277,19 @@ fn absorption(settings: &EmissionStudySettings) -> Vec<AbsorptionRow> {
     let ways = [(Absorption::Roulette, log2), (Absorption::Scale, log2 - 1), (Absorption::Branch, log2 - 6)];
     let rows = ways.map(|(way, log2)| {
         let n = 1_u64 << log2;
-        let (mut square, mut powers, mut n_stored, mut n_rays) = (0.0, [0.0; 2], 0, 0);
+        let (mut square, mut powers, mut lumens, mut n_rays) = (0.0, [0.0; 2], Vec::new(), 0);
         for k in 0..settings.n_runs {
             scene.sampler.seed = hash64(&[settings.seed, 3, k]);
             let walk = walk(&scene, PhotonPattern::Random, way, 8);
             let found = run(&scene, &emitter, &walk, n, Place::Room);
             square += error(&found.cells, &reference).powi(2) / settings.n_runs as f64;
             powers = [powers[0] + found.powers[0], powers[1] + found.powers[1]];
-            n_stored += found.n_stored;
+            lumens.extend(found.lumens);
             n_rays += found.n_rays;
         }
         let name = Absorption::NAMES.iter().find(|(_, known)| *known == way).map_or("", |(name, _)| *name);
         let emitted = (n * settings.n_runs) as f64;
+        let n_stored = lumens.len();
         let mean = powers[0] / n_stored as f64;
         AbsorptionRow {
             name,
@@ -288,13 +298,14 @@ fn absorption(settings: &EmissionStudySettings) -> Vec<AbsorptionRow> {
             stored: n_stored as f64 / emitted,
             deviation: (powers[1] / n_stored as f64 / (mean * mean) - 1.0).max(0.0).sqrt(),
             error: square.sqrt(),
+            shares: looks::shares(&lumens, mean),
         }
     });
-    rows.to_vec()
+    rows.into()
 }
 
 impl EmissionStudy {
-    /// All measurements, in two tables one after the other.
+    /// All measurements, in three tables one after the other.
     #[must_use]
     pub fn csv(&self) -> String {
         let mut text = String::from("place,pattern,photons,relative_error\n");
@@ -305,12 +316,18 @@ impl EmissionStudy {
         }
         text += "absorption,photons,rays_per_photon,stored_per_photon,power_deviation,relative_error,error_per_million_rays\n";
         for row in &self.absorption {
-            let AbsorptionRow { name, n_emitted, rays, stored, deviation, error } = row;
+            let AbsorptionRow { name, n_emitted, rays, stored, deviation, error, .. } = row;
             let _ = writeln!(
                 text,
                 "{name},{n_emitted},{rays:.4},{stored:.4},{deviation:.4},{error:.6e},{:.6e}",
                 row.error_per_million_rays()
             );
+        }
+        text += "absorption,power_over_mean,share_of_photons\n";
+        for row in &self.absorption {
+            for [power, share] in &row.shares {
+                let _ = writeln!(text, "{},{power:.4e},{share:.4e}", row.name);
+            }
         }
         text
     }
@@ -350,7 +367,7 @@ impl EmissionStudy {
         text
     }
 
-    /// Error against photons in each place.
+    /// Error against photons in each place; how power is distributed; caustics of all patterns.
     #[must_use]
     pub fn svg(&self) -> String {
         let parts = Place::ALL.map(|place| {
@@ -370,7 +387,19 @@ impl EmissionStudy {
                 ..Panel::default()
             })
         });
-        draw_rows(&parts, 3)
+        let powers = Panel {
+            title: "power of stored photons, varnished room".to_owned(),
+            x_label: "power over the mean".to_owned(),
+            y_label: "share of photons in half a decade".to_owned(),
+            legend: Corner::UpperLeft,
+            series: self.absorption.iter().map(looks::power_curve).collect(),
+            ..Panel::default()
+        };
+        let pictures = self.pictures.iter().map(|(name, image)| {
+            Part::Picture(format!("caustic of {} photons: {name}", looks::N_PHOTONS), image.clone())
+        });
+        let parts: Vec<Part> = parts.into_iter().chain([Part::Panel(powers)]).chain(pictures).collect();
+        draw_rows(&parts, 4)
     }
 }
 
@@ -397,6 +426,23 @@ mod tests {
         assert!(last(Place::Caustic, "qmc") < last(Place::Caustic, "random"));
         let [roulette, scale, branch] = [0, 1, 2].map(|i| &study.absorption[i]);
         assert!(roulette.deviation < 0.5 * scale.deviation && roulette.deviation < 0.5 * branch.deviation);
+        // Nearly all photons of roulette have the mean power; those that only weaken reach far below it.
+        let about_mean = |row: &AbsorptionRow| {
+            row.shares
+                .iter()
+                .filter(|[power, _]| (0.5..2.0).contains(power))
+                .map(|[_, share]| share)
+                .sum::<f64>()
+        };
+        assert!(
+            about_mean(roulette) > 0.95 && about_mean(scale) < 0.5,
+            "{:?} {:?}",
+            roulette.shares,
+            scale.shares
+        );
+        let total: f64 = branch.shares.iter().map(|[_, share]| share).sum();
+        assert!((total - 1.0).abs() < 1e-9 && branch.shares.len() > scale.shares.len());
+        assert_eq!(study.pictures.len(), PhotonPattern::NAMES.len());
         assert!(branch.rays > 100.0, "{} rays of a photon that branches", branch.rays);
         assert!(
             study.csv().lines().count() > 12 && study.svg().contains("</svg>") && !study.summary().is_empty()
