@@ -46,6 +46,14 @@ pub(crate) enum StudyName {
     Gathering,
     /// Error of the patterns in which photons leave lights, and of the ways to treat absorption
     PhotonEmission,
+    /// The caustic of a glass ball by photons and by paths, for lamps of three sizes; processor times, in one thread
+    PhotonCaustic,
+    /// The standard box by photons that are seen directly, few and many; processor times, in one thread
+    PhotonView,
+    /// Photon mapping in two passes beside path tracing; processor times, in one thread
+    PhotonPasses,
+    /// Error against the number of photons, in a box with flat and with fractal walls; processor times, in one thread
+    PhotonCounts,
     /// Trees, grids and lists that find the nearest photons; processor times, in one thread
     Neighbours,
 }
