@@ -97,7 +97,7 @@ pub fn two_passes(settings: &ContestSettings) -> Vec<Contest> {
         let n = settings.count(n);
         format!("\"photonmap\" \"integer globalphotons\" {n} \"integer causticphotons\" {n}")
     };
-    let few = settings.n_samples / 8;
+    let few = settings.n_samples / 2;
     let ways = |max_depth: u32| {
         vec![
             biased("photonmap", &photons(200_000), few),

@@ -37,8 +37,8 @@ pub(super) fn caustics(seed: u64) -> Vec<(&'static str, Image)> {
         });
         let mut counts = vec![0_u32; SIDE * SIDE];
         places.into_iter().for_each(|index: usize| counts[index] += 1);
-        // All photons have the same power, and white is six of them.
-        let gray = |x: usize, y: usize| counts[x / ZOOM + SIDE * (y / ZOOM)] as f32 / 6.0;
+        // All photons have the same power. White is 32 of them; by the root single ones are seen, too.
+        let gray = |x: usize, y: usize| (counts[x / ZOOM + SIDE * (y / ZOOM)] as f32 / 32.0).sqrt();
         (name, Image::from_fn(SIDE * ZOOM, SIDE * ZOOM, |x, y| [gray(x, y).min(1.0); 3]))
     };
     PhotonPattern::NAMES.map(picture).into()
