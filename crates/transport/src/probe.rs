@@ -106,14 +106,13 @@ struct Batch {
 #[must_use]
 pub fn probe(scene: &Scene, points: &[ProbePoint], settings: &ProbeSettings) -> Vec<Reading> {
     let n = settings.samples.div_ceil(N_BATCHES).max(1);
-    let probes: Vec<Probe<'_>> =
-        points.par_iter().map(|point| Probe::new(scene, *point, *settings)).collect();
-    let n_batches = N_BATCHES as usize;
-    let batches: Vec<Batch> = (0..points.len() * n_batches)
-        .into_par_iter()
-        .map(|task| probes[task / n_batches].batch(task / n_batches, (task % n_batches) as u32, n))
-        .collect();
-    batches.chunks(n_batches).map(reading).collect()
+    let read = |(index, point): (usize, &ProbePoint)| {
+        let probe = Probe::new(scene, *point, *settings);
+        let batches: Vec<Batch> =
+            (0..N_BATCHES).into_par_iter().map(|batch| probe.batch(index, batch, n)).collect();
+        reading(&batches)
+    };
+    points.par_iter().enumerate().map(read).collect()
 }
 
 fn reading(batches: &[Batch]) -> Reading {

@@ -14,7 +14,7 @@ pub(crate) struct TonemapArguments {
     /// Image with linear radiance
     pub(crate) image: PathBuf,
     /// Output; may repeat
-    #[arg(short, long = "output", value_name = "OUT", required = true)]
+    #[arg(short, long = "output", value_name = "OUT", required_unless_present = "preview")]
     pub(crate) outputs: Vec<PathBuf>,
     /// Operator, with its parameters: NAME[:key=value,...]; `etendue list tonemappers` shows them
     #[arg(long, default_value = "clamp", value_parser = parse_operator)]

@@ -13,16 +13,17 @@ fn ramp() -> Image {
 /// Metrics of renders, which carry variance and radiance.
 #[test]
 fn comparison_of_renders() {
-    let folder = Folder::with_scene(ROOM);
+    let folder = Folder::with_scene(&ROOM.replace("zsobol", "independent"));
     folder.render("a", "--spp 64 --seed 1");
     folder.render("b", "--spp 64 --seed 2");
     let json = folder.run("compare a.exr b.exr --json").expect(0).json();
     let number = |key: &str| json[key].as_f64().unwrap_or_else(|| panic!("{key}: {json}"));
-    assert!((0.0..1.0).contains(&number("ssim")) && number("hdr_flip") >= number("flip"), "{json}");
+    assert!((0.0..1.0).contains(&number("ssim")) && number("hdr_flip") > 0.0, "{json}");
     assert!(number("relmse_trimmed") <= number("relmse"), "{json}");
     // Two seeds of one scene: Student's t with 63 degrees of freedom at least, whose variance is at most 63 / 61.
     assert!((0.5..2.0).contains(&number("z_rms")) && number("p_mean") > 1e-6, "{json}");
-    assert_eq!(number("z_pixels"), 960.0);
+    // Half of the picture is black, without variance.
+    assert!((300.0..960.0).contains(&number("z_pixels")), "{json}");
     for kind in ["flip", "hdr-flip", "absolute", "signed", "relative", "z", "side-by-side", "split"] {
         folder.run(&format!("compare a.exr b.exr -o {kind}.png --map {kind}")).expect(0);
         let width = if kind == "side-by-side" { 3 * 40 + 2 } else { 40 };
@@ -67,13 +68,19 @@ fn false_colors() {
     write_image(folder.path("ramp.exr"), &ramp()).expect("written");
     let run =
         folder.run("falsecolor ramp.exr -o map.png -o map.exr").expect(0).says("does not tell the unit");
-    assert!(run.stdout.contains("max         10000.000000 cd/m²"), "{}", run.stdout);
+    let lines: Vec<&str> =
+        run.stdout.lines().map(|line| line.split(' ').next().unwrap_or_default()).collect();
+    assert_eq!(lines, ["min", "mean", "max", "min"], "{}", run.stdout);
+    assert!(run.stdout.contains(" cd/m²"), "{}", run.stdout);
     let map = folder.image("map.png");
     // Nine times as large, for small pictures can hardly be read, with a legend.
     assert!(map.width > 360 && map.height == 180);
     let json =
         folder.run("falsecolor ramp.exr -o bare.png --no-legend --json --palette heat").expect(0).json();
-    assert_eq!((&json["min"], &json["unit"]), (&1.0.into(), &"cd/m²".into()));
+    assert!(
+        (json["min"].as_f64().expect("a number") - 1.0).abs() < 1e-6 && json["unit"] == "cd/m²",
+        "{json}"
+    );
     assert_eq!(folder.image("bare.png").width, 360);
     // White paper that reflects 80 %.
     let arguments = "falsecolor ramp.exr -o lux.png --reflectance 0.8 --range 1,1000 --scale log --json";
@@ -99,21 +106,26 @@ fn false_colors() {
 /// Exposure and colour space of a render are undone: luminance is that of the scene.
 #[test]
 fn luminance_of_renders() {
-    let sky = |film: &str| {
-        format!(
-            "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4 {film}
+    let exposed = "\"float iso\" 400 \"float exposuretime\" 0.5";
+    let mut shown = Vec::new();
+    for (space, film) in [("srgb", ""), ("srgb", exposed), ("rec2020", exposed)] {
+        let folder = Folder::with_scene(&format!(
+            "ColorSpace \"{space}\"
+            Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4 {film}
             Camera \"perspective\" WorldBegin
             LightSource \"infinite\" \"spectrum L\" [360 1 830 1] \"float scale\" 50"
-        )
-    };
-    for film in ["", "\"float iso\" 400 \"float exposuretime\" 0.5", "\"string colorspace\" \"rec2020\""] {
-        let film = if film.contains("colorspace") { "" } else { film };
-        let folder = Folder::with_scene(&sky(film));
-        folder.render("a", "--spp 256");
+        ));
+        let image = folder.render("a", "--spp 256");
+        let primaries = image.metadata.get("chromaticities").map(|text| text.starts_with("0.708 0.292"));
+        assert_eq!(primaries, (space == "rec2020").then_some(true), "{:?}", image.metadata);
         let json = folder.run("falsecolor a.exr -o map.png --json").expect(0).json();
         let mean = json["mean"].as_f64().expect("a number");
-        assert!((mean / 50.0 - 1.0).abs() < 0.02, "{film}: {json}");
+        assert!((mean / 50.0 - 1.0).abs() < 0.02, "{space} {film}: {json}");
+        // What a display shows is the same whatever the primaries of the file.
+        folder.run("tonemap a.exr -o a.png --exposure -8").expect(0);
+        shown.push(folder.image("a.png").rgb_pixels().expect("colour")[0]);
     }
+    assert!((0..3).all(|c| (shown[1][c] / shown[2][c] - 1.0).abs() < 0.05), "{shown:?}");
 }
 
 /// Light below a uniform sky of luminance L: pi L lux, at points, on grids, in all formats.
@@ -287,27 +299,6 @@ fn camera_matrices() {
     }
 }
 
-/// Files of other colour spaces say so, and are shown alike.
-#[test]
-fn color_spaces() {
-    let folder = Folder::with_scene(
-        &ROOM.replace("\"string filename\"", "\"string colorspace\" \"COLORS\" \"string filename\""),
-    );
-    let scene = String::from_utf8(folder.read("scene.pbrt")).expect("text");
-    let has_space = scene.contains("COLORS");
-    assert!(has_space);
-    folder.write("scene.pbrt", scene.replace("\"string colorspace\" \"COLORS\"", ""));
-    folder.render("srgb", "--spp 4");
-    folder.write(
-        "scene.pbrt",
-        format!("ColorSpace \"rec2020\"\n{}", scene.replace("\"string colorspace\" \"COLORS\"", "")),
-    );
-    let wide = folder.render("wide", "--spp 4");
-    if wide.metadata["etendue.colorspace"] == "rec2020" {
-        assert!(wide.metadata["chromaticities"].starts_with("0.708 0.292"), "{:?}", wide.metadata);
-    }
-}
-
 /// Pictures for displays beyond sRGB.
 #[test]
 fn displays() {
@@ -338,7 +329,8 @@ fn previews() {
     let folder = Folder::with_scene(ROOM);
     let run = folder.run("render scene.pbrt -q --spp 1 -o a.exr --preview").expect(0);
     assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("", ""));
-    let run = folder.run("tonemap a.exr -o a.png --preview=blocks");
+    folder.run("tonemap a.exr").expect(2).says("--output");
+    let run = folder.run("tonemap a.exr --preview=blocks");
     assert_eq!(run.code, Some(0));
     // Forty letters in each of twelve lines.
     assert_eq!(run.stdout.lines().count(), 12);
