@@ -150,6 +150,13 @@ impl PathExpression {
         self.accepts_light(state)
     }
 
+    /// Whether it accepts light of a path in that state which goes on by an event and by those of a photon, from its end back to
+    /// its light.
+    fn accepts_trail(&self, state: StateID, event: Event, trail: impl Iterator<Item = Event>) -> bool {
+        let state = self.automaton.next_state(state, event.byte());
+        self.accepts_light(trail.fold(state, |state, event| self.automaton.next_state(state, event.byte())))
+    }
+
     fn accepts_light(&self, state: StateID) -> bool {
         let state = self.automaton.next_state(state, b'L');
         self.automaton.is_match_state(self.automaton.next_eoi_state(state))
@@ -295,6 +302,7 @@ impl PathExpressions {
             n_layers: self.names.len(),
             states: [StateID::ZERO; MAX_EXPRESSIONS],
             radiance: [Sampled::ZERO; MAX_LAYERS],
+            single: [0.0; MAX_EXPRESSIONS],
         };
         recorder.restart();
         recorder
@@ -314,6 +322,8 @@ pub struct LayerRecorder<'e> {
     states: [StateID; MAX_EXPRESSIONS],
     /// Layers by expression come first.
     radiance: [Sampled; MAX_LAYERS],
+    /// Radiance of the first wavelength, of layers by expression, that is still to be settled.
+    single: [f32; MAX_EXPRESSIONS],
 }
 
 impl LayerRecorder<'_> {
@@ -330,6 +340,7 @@ impl LayerRecorder<'_> {
             self.states[index] = expression.automaton.next_state(expression.start, b'E');
         }
         self.radiance[..self.n_layers].fill(Sampled::ZERO);
+        self.single[..self.expressions.len()].fill(0.0);
     }
 
     /// How far the path has come, to go on from there several times.
@@ -377,13 +388,32 @@ impl LayerRecorder<'_> {
         radiance: Sampled,
     ) {
         for (index, expression) in self.expressions.iter().enumerate() {
-            let state = expression.automaton.next_state(self.states[index], event.byte());
-            let state = trail
-                .clone()
-                .fold(state, |state, event| expression.automaton.next_state(state, event.byte()));
-            if expression.accepts_light(state) {
+            if expression.accepts_trail(self.states[index], event, trail.clone()) {
                 self.radiance[index] += radiance;
             }
+        }
+    }
+
+    /// The same for radiance of the first wavelength alone, whose weight is not known before the path ends:
+    /// [`Self::settle_single`] tells it.
+    pub fn emit_single_trail(
+        &mut self,
+        event: Event,
+        trail: impl Iterator<Item = Event> + Clone,
+        radiance: f32,
+    ) {
+        for (index, expression) in self.expressions.iter().enumerate() {
+            if expression.accepts_trail(self.states[index], event, trail.clone()) {
+                self.single[index] += radiance;
+            }
+        }
+    }
+
+    /// Adds what came by [`Self::emit_single_trail`], times a factor.
+    pub fn settle_single(&mut self, factor: f32) {
+        for (radiance, single) in self.radiance.iter_mut().zip(&mut self.single[..self.expressions.len()]) {
+            radiance[0] += *single * factor;
+            *single = 0.0;
         }
     }
 

@@ -64,6 +64,20 @@ fn continued_renders() {
     assert_same(&whole, &again);
 }
 
+/// Progressive photon mapping goes on with the radii that it had, those of the schedule and those of each pixel.
+#[test]
+fn continued_photons() {
+    for update in ["schedule", "perpixel"] {
+        let folder = Folder::with_scene(ROOM);
+        let method = format!("--integrator sppm:photonsperiteration=2000,radiusupdate={update}");
+        let whole = folder.render("whole", &format!("{method} --spp 5 --threads 1"));
+        folder.render("out", &format!("{method} --spp 2 --checkpoint state"));
+        let continued =
+            folder.render("out", &format!("{method} --spp 5 --threads 2 --checkpoint state --resume"));
+        assert_same(&whole, &continued);
+    }
+}
+
 /// Without `--resume` a checkpoint is begun anew.
 #[test]
 fn checkpoints_without_resume() {

@@ -34,6 +34,24 @@ fn keys() {
     }
 }
 
+/// Photons of a pass are forgotten after it: ten times as many passes take no more memory. (What a single pass keeps is a
+/// multiple of what would be allowed to grow.)
+#[test]
+fn passes_of_photons_need_no_more_memory() {
+    if !cfg!(target_os = "linux") {
+        return;
+    }
+    let folder = Folder::with_scene(ROOM);
+    let peak = |n_passes: u32| {
+        let method = "--integrator sppm:photonsperiteration=400000 --threads 2";
+        statistics(&folder, &format!("{method} --spp {n_passes}"))["peak_memory_bytes"]
+            .as_f64()
+            .expect("a number")
+    };
+    let (few, many) = (peak(2), peak(20));
+    assert!(many < 1.15 * few, "{few} bytes become {many}");
+}
+
 /// Both kinds of rays are told apart: paths that find lights by chance ask for no visibility.
 #[test]
 fn shadow_rays_are_counted_apart() {

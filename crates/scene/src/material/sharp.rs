@@ -16,8 +16,9 @@ impl Materials {
             Material::Dielectric(material) => material.roughness.may_be_below(sharp_alpha),
             Material::Mix(mix) => mix.materials.iter().any(|part| self.may_be_sharp(*part, sharp_alpha)),
             Material::Classic(material) => !matches!(material.model, ClassicModel::OrenNayar(_)),
-            Material::CoatedDiffuse(_)
-            | Material::CoatedConductor(_)
+            // What the base scatters leaves as widely as from it or through a coat that is as wide.
+            Material::CoatedDiffuse(material) => material.coat.roughness.may_be_below(sharp_alpha),
+            Material::CoatedConductor(_)
             | Material::ThinDielectric(_)
             | Material::Principled(_)
             | Material::Tabulated(_)

@@ -90,6 +90,14 @@ impl<'s> Tracer<'s> {
         self.scene.intersect(ray, f32::INFINITY)
     }
 
+    /// The nearest surface along the ray before `t_max`.
+    #[inline]
+    #[must_use]
+    pub fn intersect_within(&self, ray: &Ray, t_max: f32) -> Option<Hit> {
+        self.count_shadow_ray();
+        self.scene.intersect(ray, t_max)
+    }
+
     /// Counts a shadow ray.
     #[inline]
     pub fn count_shadow_ray(&self) {

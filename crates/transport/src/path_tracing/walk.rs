@@ -419,7 +419,7 @@ impl<'s> Walk<'s> {
 
     /// What the admitted lobes make of light that reaches the surface; shows each of them to the layers.
     #[cold]
-    fn scatter_by_lobes(
+    pub(crate) fn scatter_by_lobes(
         &self,
         surface: &Surface,
         bsdf: &Bsdf,

@@ -9,7 +9,7 @@ use etendue_scene::{Film, Scene};
 use crate::support::{channel, luminance, render_passes};
 
 /// A scene of the repository at another size, with parameters of the integrator in addition.
-fn scene(name: &str, size: [i32; 2], parameter: Option<(&'static str, Value)>) -> Scene {
+pub(crate) fn scene(name: &str, size: [i32; 2], parameter: Option<(&'static str, Value)>) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
     let (mut document, problems) = read_pbrt(&path);
     assert!(!problems.has_errors(), "{name}: {problems:?}");

@@ -14,18 +14,15 @@ use etendue_scene::bsdf::{Bsdf, BsdfKind, BsdfSample, Lobes, TransportMode};
 use etendue_scene::scene::Surface;
 use etendue_spectrum::{Sampled, Wavelengths};
 
+use super::patch::Patch;
 use super::photons::{GroupPhoton, GroupPhotons, receiving_lobes};
 use super::radius::FirstRadius;
 use super::statistics::PixelStatistics;
 use super::{DirectLighting, ProgressiveSettings};
 use crate::lpe::Event;
 use crate::path::camera_pass::{CameraPath, Common, Follow, FollowedPath, Tracer};
-use crate::path_tracing::PathSettings;
 use crate::path_tracing::walk::Walk;
-
-/// Photons count that are no farther from the tangent plane than this share of the radius: those on other walls of a corner do
-/// not.
-const THICKNESS: f32 = 0.25;
+use crate::path_tracing::{LightStrategy, PathSettings};
 
 /// The camera paths of a group.
 #[derive(Debug)]
@@ -99,15 +96,18 @@ impl Follow for Eye<'_> {
             // Fixed paths meet new light samples in each pass.
             swap_numbers(path, &mut light_numbers);
             walk.add_direct_light(tracer, &surface, &bsdf, 1.0, path);
+            let followed = bsdf.lobes() & !received;
+            if self.settings.direct == DirectLighting::Photons && followed.has_non_specular() {
+                add_delta_lights(&mut walk, tracer, &surface, &bsdf, followed, path);
+            }
             if !received.is_empty() {
                 if self.settings.direct == DirectLighting::Lights {
                     probe(&mut walk, tracer, &surface, &bsdf, received, path);
                 }
                 let admitted = received & walk.admitted(tracer.scene, &surface, &bsdf);
-                self.receive(&mut walk, &mut state, &surface, &bsdf, admitted, path);
+                self.receive(tracer, &mut walk, &mut state, &surface, &bsdf, admitted, path);
             }
             swap_numbers(path, &mut light_numbers);
-            let followed = bsdf.lobes() & !received;
             if followed.is_empty() || !leave(&mut walk, tracer, &surface, &bsdf, followed, path) {
                 break;
             }
@@ -119,7 +119,9 @@ impl Follow for Eye<'_> {
         let mut radiance = walk.radiance;
         let one = single(&self.lambda).pdf()[0];
         if state.single > 0.0 && one > 0.0 {
-            radiance[0] += state.single * (path.lambda.pdf()[0] / one);
+            let weight = path.lambda.pdf()[0] / one;
+            radiance[0] += state.single * weight;
+            path.layers.settle_single(weight);
         }
         (radiance, ())
     }
@@ -153,6 +155,27 @@ struct EyeState {
     /// Radiance from photons of one wavelength at that wavelength.
     single: f32,
     neighbours: Neighbours,
+}
+
+/// Adds the light of lights that no direction runs into, for lobes that do not get it from photons.
+fn add_delta_lights(
+    walk: &mut Walk<'_>,
+    tracer: &Tracer<'_>,
+    surface: &Surface,
+    bsdf: &Bsdf,
+    lobes: Lobes,
+    path: &mut CameraPath<'_, '_>,
+) {
+    let settings = PathSettings { lights: LightStrategy::Lights, ..*walk.settings };
+    let sampling = walk.with_settings(&settings);
+    let lobes = lobes & walk.admitted(tracer.scene, surface, bsdf);
+    let scattered = sampling.direct_light(tracer, surface, bsdf, 1.0, path, |candidate, through, path| {
+        if !candidate.light.sample.is_delta {
+            return Sampled::ZERO;
+        }
+        sampling.scatter_by_lobes(surface, bsdf, lobes, candidate, through, path.layers)
+    });
+    walk.radiance += scattered.unwrap_or(Sampled::ZERO);
 }
 
 /// Chooses a direction among these lobes, and leaves.
@@ -200,8 +223,10 @@ fn probe(
 
 impl Eye<'_> {
     /// Adds the light of the photons around.
+    #[expect(clippy::too_many_arguments, reason = "all that photons meet")]
     fn receive(
         &self,
+        tracer: &Tracer<'_>,
         walk: &mut Walk<'_>,
         state: &mut EyeState,
         surface: &Surface,
@@ -222,33 +247,37 @@ impl Eye<'_> {
         }
         let limit = self.settings.max_depth.saturating_sub(walk.depth + 1);
         let mut n_photons = 0;
-        let counts = |photon: &GroupPhoton| {
-            (photon.p - point.p).dot_normal(point.ng).abs() <= THICKNESS * radius
-                && u32::from(photon.depth) <= limit
-        };
+        let patch = Patch::new(surface, radius);
+        let is_recorded = !path.layers.is_idle();
+        // What else the path does with these numbers is added to this, never multiplied.
+        let mut numbers = path.sampler.clone();
+        numbers.start_vertex();
+        let alpha = self.settings.receiver_alpha;
+        let mut inverse_share = || patch.inverse_share(tracer, surface, alpha, &self.lambda, &mut numbers);
+        let known = is_recorded.then(&mut inverse_share);
         let (mut all, mut one) = (Sampled::ZERO, 0.0);
         if let BsdfKind::Diffuse(diffuse) = bsdf.kind()
-            && path.layers.is_idle()
+            && !is_recorded
             && !lobes.is_empty()
         {
             let ns = bsdf.ns();
             let side = surface.wo.dot_normal(ns);
-            self.photons.within(point.p, radius, &mut |photon, _| {
-                if !counts(photon) || photon.wi.dot_normal(ns) * side <= 0.0 {
+            self.photons.visit(&patch, &mut |photon, weight, _| {
+                if u32::from(photon.depth) > limit || photon.wi.dot_normal(ns) * side <= 0.0 {
                     return;
                 }
                 n_photons += 1;
-                if photon.is_single { one += photon.flux[0] } else { all += photon.flux }
+                if photon.is_single { one += photon.flux[0] * weight } else { all += photon.flux * weight }
             });
             let f = diffuse.reflectance * std::f32::consts::FRAC_1_PI;
             (all, one) = (all * f, one * f[0]);
         } else {
-            self.photons.within(point.p, radius, &mut |photon, index| {
-                if !counts(photon) {
+            self.photons.visit(&patch, &mut |photon, weight, index| {
+                if u32::from(photon.depth) > limit {
                     return;
                 }
                 let lobes = lobes & photon.lobes;
-                let f = bsdf.eval(surface.wo, photon.wi, TransportMode::Radiance, lobes);
+                let f = bsdf.eval(surface.wo, photon.wi, TransportMode::Radiance, lobes) * weight;
                 if f.is_black() {
                     return;
                 }
@@ -258,13 +287,17 @@ impl Eye<'_> {
                 } else {
                     all += photon.flux * f
                 }
-                if !path.layers.is_idle() {
-                    self.record(photon, index, surface, bsdf, lobes, walk.beta * scale, path);
+                if let Some(inverse_share) = known {
+                    let scale = walk.beta * (scale * weight * inverse_share);
+                    self.record(photon, index, surface, bsdf, lobes, scale, path);
                 }
             });
         }
-        walk.radiance += walk.beta * all * scale;
-        state.single += walk.beta[0] * one * scale;
+        if n_photons > 0 {
+            let scale = scale * known.unwrap_or_else(inverse_share);
+            walk.radiance += walk.beta * all * scale;
+            state.single += walk.beta[0] * one * scale;
+        }
         if let Some((pixels, part)) = self.pixels {
             pixels.count(path.numbers_of, part, n_photons);
         }
@@ -283,17 +316,19 @@ impl Eye<'_> {
         scale: Sampled,
         path: &mut CameraPath<'_, '_>,
     ) {
-        let mut flux = photon.flux * scale;
-        if photon.is_single {
-            flux[0] *= path.lambda.pdf()[0] / single(&self.lambda).pdf()[0];
-        }
+        let flux = photon.flux * scale;
         let glossy = Event::glossy(bsdf.glossy_roughness(), self.settings.sharp_alpha);
         for (event, lobes) in [(Event::Diffuse, lobes & Lobes::DIFFUSE), (glossy, lobes & Lobes::GLOSSY)] {
             let f = bsdf.eval(surface.wo, photon.wi, TransportMode::Radiance, lobes);
             if f.is_black() {
                 continue;
             }
-            path.layers.emit_trail(event, self.photons.trail(index).events().rev(), f * flux);
+            let trail = self.photons.trail(index).events().rev();
+            if photon.is_single {
+                path.layers.emit_single_trail(event, trail, f[0] * flux[0]);
+            } else {
+                path.layers.emit_trail(event, trail, f * flux);
+            }
         }
     }
 }

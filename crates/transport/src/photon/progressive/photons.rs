@@ -3,15 +3,17 @@
 use std::ops::Range;
 
 use etendue_geometry::points::PackedPoints;
-use etendue_math::{Point3, Vector3};
+use etendue_math::{Normal3, Point3, Vector3};
 use etendue_scene::Scene;
 use etendue_scene::bsdf::{Bsdf, Lobes};
 use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;
 
+use super::families::Family;
+use super::patch::Patch;
 use crate::integrator::{Control, RayCounts};
 use crate::path::camera_pass::Tracer;
-use crate::photon::{Onward, PhotonEmitter, PhotonVertex, PhotonWalk, Trail};
+use crate::photon::{Onward, PhotonVertex, Trail};
 
 /// Photons that one task follows: results are in order of the photons for any number of threads.
 const PHOTONS_PER_TASK: u64 = 4096;
@@ -21,9 +23,10 @@ const PHOTONS_PER_TASK: u64 = 4096;
 pub(super) struct GroupPhoton {
     /// Flux at the wavelengths of the group, if it is the only one emitted.
     pub(super) flux: Sampled,
-    pub(super) p: Point3,
     /// Direction to where it came from.
     pub(super) wi: Vector3,
+    /// Geometric normal of the surface, on the side of `wi`.
+    pub(super) n: Normal3,
     /// Events before it arrived.
     pub(super) depth: u16,
     /// Dispersion has left the first wavelength alone; the others are 0.
@@ -35,8 +38,7 @@ pub(super) struct GroupPhoton {
 /// How the photons of a group are made.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PhotonPlan<'p> {
-    pub(super) emitter: &'p PhotonEmitter,
-    pub(super) walk: &'p PhotonWalk,
+    pub(super) families: &'p [Family],
     pub(super) lambda: Wavelengths,
     /// When, in seconds; `None` for any time.
     pub(super) time: Option<f32>,
@@ -67,29 +69,32 @@ pub(super) fn receiving_lobes(bsdf: &Bsdf, receiver_alpha: f32) -> Lobes {
 
 #[derive(Debug, Default)]
 struct Part {
+    points: Vec<Point3>,
     photons: Vec<GroupPhoton>,
     trails: Vec<Trail>,
 }
 
 impl GroupPhotons {
-    /// Emits and follows photons of these indices in parallel; `None` if the render was stopped meanwhile.
+    /// Emits and follows the photons of a group in parallel; `None` if the render was stopped meanwhile.
     pub(super) fn trace(
         scene: &Scene,
-        range: Range<u64>,
+        group: u64,
         plan: &PhotonPlan<'_>,
         control: &Control<'_>,
     ) -> Option<Self> {
-        let n_emitted = range.end - range.start;
-        let n_tasks = n_emitted.div_ceil(PHOTONS_PER_TASK);
-        let parts: Vec<Part> = (0..n_tasks)
+        let n_emitted = plan.families.iter().map(|family| family.n_photons).sum();
+        let tasks_of = |family| {
+            let range = Family::range(family, group);
+            let starts = range.clone().step_by(PHOTONS_PER_TASK as usize);
+            starts.map(move |start| (family, start..range.end.min(start + PHOTONS_PER_TASK)))
+        };
+        let tasks: Vec<_> = plan.families.iter().flat_map(tasks_of).collect();
+        let parts: Vec<Part> = tasks
             .into_par_iter()
-            .map(|task| {
+            .map(|(family, range)| {
                 let mut part = Part::default();
                 if !control.is_cancelled() {
-                    let start = range.start + task * PHOTONS_PER_TASK;
-                    let rays =
-                        plan.trace_part(scene, start..range.end.min(start + PHOTONS_PER_TASK), &mut part);
-                    control.tile_done(0, rays);
+                    control.tile_done(0, plan.trace_part(scene, family, range, &mut part));
                 }
                 part
             })
@@ -100,7 +105,7 @@ impl GroupPhotons {
     fn new(parts: &[Part], n_emitted: u64) -> Self {
         let all: Vec<GroupPhoton> = parts.iter().flat_map(|part| &part.photons).copied().collect();
         let all_trails: Vec<Trail> = parts.iter().flat_map(|part| &part.trails).copied().collect();
-        let points: Vec<Point3> = all.par_iter().map(|photon| photon.p).collect();
+        let points: Vec<Point3> = parts.iter().flat_map(|part| &part.points).copied().collect();
         let (tree, order) = PackedPoints::new(&points);
         let photons = order.par_iter().map(|index| all[*index as usize]).collect();
         let trails = if all_trails.is_empty() {
@@ -116,10 +121,17 @@ impl GroupPhotons {
         self.photons.len()
     }
 
-    /// Visits the photons no farther from `p` than `radius`, always in the same order.
+    /// Visits the photons that a patch holds, with their weight and index, always in the same order.
     #[inline]
-    pub(super) fn within(&self, p: Point3, radius: f32, visit: &mut impl FnMut(&GroupPhoton, u32)) {
-        self.tree.within(p, radius, |n| visit(&self.photons[n.index as usize], n.index));
+    pub(super) fn visit(&self, patch: &Patch, visit: &mut impl FnMut(&GroupPhoton, f32, u32)) {
+        self.tree.within(patch.p, patch.radius, |found| {
+            let photon = &self.photons[found.index as usize];
+            let side = photon.wi.dot_normal(patch.n);
+            let weight = patch.weight(self.tree.point(found.index), photon.n, side);
+            if weight > 0.0 {
+                visit(photon, weight, found.index);
+            }
+        });
     }
 
     /// The word of a photon's path.
@@ -129,24 +141,27 @@ impl GroupPhotons {
 }
 
 impl PhotonPlan<'_> {
-    fn trace_part(&self, scene: &Scene, range: Range<u64>, part: &mut Part) -> RayCounts {
+    fn trace_part(&self, scene: &Scene, family: &Family, range: Range<u64>, part: &mut Part) -> RayCounts {
         let tracer = Tracer::new(scene);
         for index in range {
-            let mut numbers = self.walk.numbers(index);
+            let mut numbers = family.walk.numbers(index);
             // The place of a wavelength of its own.
             numbers.next_1d();
             let mut lambda = self.lambda;
-            let photon = self.emitter.emit_at(self.time, scene, &mut numbers, &lambda);
+            let photon = family.emitter.emit_at(self.time, scene, &mut numbers, &lambda);
             let Some(photon) = photon else { continue };
-            self.walk.follow(&tracer, &photon, &mut numbers, &mut lambda, &mut |vertex| {
-                self.keep(vertex, part);
-                Onward::Continue
+            family.walk.follow(&tracer, &photon, &mut numbers, &mut lambda, &mut |vertex| {
+                let holds = family.holds(vertex);
+                if holds == Some(true) {
+                    self.keep(vertex, family.weight(), part);
+                }
+                if holds == Some(false) { Onward::Stop } else { Onward::Continue }
             });
         }
         tracer.counts()
     }
 
-    fn keep(&self, vertex: &PhotonVertex<'_>, part: &mut Part) {
+    fn keep(&self, vertex: &PhotonVertex<'_>, weight: f32, part: &mut Part) {
         let received = receiving_lobes(vertex.bsdf, self.receiver_alpha) & vertex.lobes;
         if vertex.depth < self.least_depth || received.is_empty() {
             return;
@@ -157,7 +172,7 @@ impl PhotonPlan<'_> {
             return;
         }
         // Flux falls on the geometric surface, and is reflected by the shading normal's [Veach 1997, section 5.3].
-        let mut flux = vertex.flux * (vertex.bsdf.abs_cos(wi) / cos_geometric);
+        let mut flux = vertex.flux * (weight * vertex.bsdf.abs_cos(wi) / cos_geometric);
         let is_single = vertex.lambda.secondary_terminated() && !self.lambda.secondary_terminated();
         if is_single {
             flux = Sampled::from_array([flux[0], 0.0, 0.0, 0.0]);
@@ -165,10 +180,11 @@ impl PhotonPlan<'_> {
         if flux.is_black() || !flux.is_finite() {
             return;
         }
+        part.points.push(surface.point.p);
         part.photons.push(GroupPhoton {
             flux,
-            p: surface.point.p,
             wi,
+            n: surface.point.ng.facing(wi),
             depth: vertex.depth as u16,
             is_single,
             lobes: vertex.lobes,

@@ -10,8 +10,9 @@ use etendue_scene::Scene;
 use rayon::prelude::*;
 
 use super::ProgressiveSettings;
+use super::families::Family;
 use super::photons::receiving_lobes;
-use crate::photon::{Onward, PhotonEmitter, PhotonWalk, trace_photons};
+use crate::photon::{Onward, PhotonVertex, PhotonWalk, trace_photons};
 
 /// Photons that are emitted to measure the density.
 const N_PILOTS: u64 = 1 << 15;
@@ -49,22 +50,29 @@ impl FirstRadius {
     pub(super) fn new(
         scene: &Scene,
         settings: &ProgressiveSettings,
-        emitter: &PhotonEmitter,
-        walk: &PhotonWalk,
+        families: &[Family],
         n_group: u64,
         least_depth: u32,
     ) -> Self {
         if let Some(radius) = settings.radius {
             return Self::Constant(radius);
         }
-        let (points, _) = trace_photons(scene, emitter, 0..N_PILOTS, walk, |_, vertex, points| {
-            if vertex.depth >= least_depth
-                && !receiving_lobes(vertex.bsdf, settings.receiver_alpha).is_empty()
-            {
-                points.push(vertex.surface.point.p);
-            }
-            Onward::Continue
-        });
+        let mut points = Vec::new();
+        for family in families {
+            let walk = PhotonWalk { stream: family.walk.stream + 1, ..family.walk };
+            let n = N_PILOTS * family.n_photons / n_group;
+            let keep = |_, vertex: &PhotonVertex<'_>, points: &mut Vec<Point3>| {
+                let holds = family.holds(vertex);
+                if holds == Some(true)
+                    && vertex.depth >= least_depth
+                    && !receiving_lobes(vertex.bsdf, settings.receiver_alpha).is_empty()
+                {
+                    points.push(vertex.surface.point.p);
+                }
+                if holds == Some(false) { Onward::Stop } else { Onward::Continue }
+            };
+            points.extend(trace_photons(scene, &family.emitter, 0..n, &walk, keep).0);
+        }
         let pilots = PointTree::new(&points);
         let largest = LARGEST * scene.light_tables.scene_sphere.radius;
         // As many of the group's photons as are wanted, where so many pilots have so many neighbours.

@@ -38,12 +38,14 @@ pub struct ProgressiveSettings {
     pub has_fixed_points: bool,
     /// Most scattering events of a path from the light to the camera; longer paths are lost.
     pub max_depth: u32,
-    /// Photons emitted in a pass; `None` for as many as there are pixels.
+    /// Photons emitted in a pass; `None` for as many as there are camera paths.
     pub photons: Option<u32>,
     /// Radius of the first pass in metres; `None` to choose it for each place from the density of photons.
     pub radius: Option<f32>,
     /// Share of new photons that count: how fast the radius shrinks.
     pub alpha: f32,
+    /// Share of the photons that are aimed at what may cast caustics; 0 for none.
+    pub caustic_share: f32,
     /// How the radius shrinks.
     pub update: RadiusUpdate,
     /// What brings direct light.
@@ -68,6 +70,7 @@ impl Default for ProgressiveSettings {
             has_fixed_points: false,
             max_depth: 5,
             photons: None,
+            caustic_share: 0.25,
             radius: None,
             alpha: 2.0 / 3.0,
             update: RadiusUpdate::default(),
@@ -95,9 +98,16 @@ impl ProgressiveSettings {
         ParameterSpec {
             name: "photonsperiteration",
             kind: "integer",
-            default: "one for each pixel",
+            default: "one for each camera path",
             unit: "",
             doc: "photons emitted in a pass",
+        },
+        ParameterSpec {
+            name: "causticshare",
+            kind: "float",
+            default: "0.25",
+            unit: "",
+            doc: "share of the photons that are aimed at what may cast caustics, where less of the light goes there; 0 for none",
         },
         ParameterSpec {
             name: "radius",
@@ -169,6 +179,12 @@ impl ProgressiveSettings {
             -1 => None,
             _ => Some(p.count_within("photonsperiteration", 1, 1, MAX_PHOTONS)),
         };
+        let caustic_share = p.float("causticshare", default.caustic_share);
+        if !(0.0..1.0).contains(&caustic_share) {
+            let span = p.span_of("causticshare");
+            let message = format!("\"causticshare\" must be at least 0 and below 1, but is {caustic_share}");
+            p.diagnostics().error(span, message);
+        }
         let radius = p.has("radius").then(|| positive(p, "radius", 1.0));
         let alpha = p.float("alpha", default.alpha);
         if !(alpha > 0.0 && alpha <= 1.0) {
@@ -191,6 +207,7 @@ impl ProgressiveSettings {
             has_fixed_points: false,
             max_depth,
             photons,
+            caustic_share,
             radius,
             alpha,
             update,
