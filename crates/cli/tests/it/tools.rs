@@ -3,7 +3,7 @@
 use etendue::image::Image;
 use etendue::io::images::write_image;
 
-use crate::support::{Folder, ROOM};
+use crate::support::{Folder, ROOM, assert_same};
 
 /// A folder with two images of 8 x 4 pixels, `b` twice as bright as `a`.
 fn images() -> Folder {
@@ -264,6 +264,42 @@ fn photon_maps() {
         folder.run(&format!("info {name}")).expect(2).says(says);
     }
     folder.run("info missing.photons").expect(2).says("missing.photons");
+}
+
+/// A photon map that was written for `photonmap` gives the same picture, from a scene file as from the command line;
+/// what is no such map is an error that says what to do.
+#[test]
+fn photon_maps_are_read() {
+    let folder = Folder::with_scene(ROOM);
+    let few = "globalphotons=3000,causticphotons=3000";
+    for map in ["global", "caustic"] {
+        let arguments =
+            format!("photons scene.pbrt --map {map} --integrator photonmap:{few} -o {map}.photons");
+        folder.run(&arguments).expect(0).says("stored");
+        let facts = folder.run(&format!("info {map}.photons --json")).expect(0).json();
+        assert_eq!(facts["map"]["content"], map);
+    }
+    let traced = folder.render("traced", &format!("--integrator photonmap:{few}"));
+    let files = "globalmap=global.photons,causticmap=caustic.photons";
+    let read = folder.render("read", &format!("--integrator photonmap:{files}"));
+    assert_same(&traced, &read);
+    let named = ROOM
+        .replace("\"path\" \"integer maxdepth\" 4", "\"photonmap\" \"string globalmap\" \"global.photons\"");
+    assert!(named != ROOM);
+    folder.write("named.pbrt", named);
+    folder.run("render named.pbrt --spp 1 -o named.png").expect(0);
+    for (file, says) in [
+        ("caustic.photons", "a global map is needed"),
+        ("none.photons", "none.photons"),
+        ("scene.pbrt", "--map global"),
+    ] {
+        folder
+            .run(&format!("render scene.pbrt --integrator photonmap:globalmap={file} -o x.png"))
+            .expect(2)
+            .says(says);
+    }
+    folder.run("photons scene.pbrt --map global -o x.png").expect(2).says(".photons");
+    folder.run("photons scene.pbrt --map global --photons 9 -o x.photons").expect(2);
 }
 
 /// A rendered picture, photographed by several exposures, comes back; and its exposures blend.

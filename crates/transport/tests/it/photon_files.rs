@@ -111,7 +111,7 @@ fn maps_are_checked_against_the_scene() {
     let looked_at = PhotonMap::trace(&plain, 1000, 0, |_| true).to_bytes();
     says(&check(2.0, few("photonmap"), &looked_at), Severity::Error, "to be looked at");
     says(&check(2.0, few("photonmap"), &global[..99]), Severity::Error, "cut short");
-    says(&check(2.0, few("photonmap"), b"P6 1 1 255"), Severity::Error, "no photon map");
+    says(&check(2.0, few("photonmap"), b"P6 1 1 255"), Severity::Error, "not a photon map");
     // More samples or rays change no map.
     let rays = few("photonmap").with("gatherrays", Value::Integers(vec![3]));
     assert!(check(2.0, rays, &global).list().is_empty());

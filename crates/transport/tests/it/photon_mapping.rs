@@ -237,6 +237,29 @@ fn maps_may_be_empty() {
     }
 }
 
+/// Photons that all lie at one point, as those of a narrow beam far from the origin do, are an image without faults, and not lost.
+#[test]
+fn all_photons_at_one_point() {
+    let world = format!(
+        "LightSource \"spot\" \"point3 from\" [50000 50000 999.9] \"point3 to\" [50000 50000 1000] \"float coneangle\" 0.2
+        \"float conedeltaangle\" 0.01 {} Material \"diffuse\" {} Shape \"bilinearmesh\"
+        \"point3 P\" [49990 49990 1000  50010 49990 1000  49990 50010 1000  50010 50010 1000]",
+        lit("I", 1.0),
+        flat("reflectance", 0.5)
+    );
+    let camera = "LookAt 50000 50000 990  50000 50000 1000  0 1 0 Camera \"perspective\" \"float fov\" 20";
+    for (name, count) in
+        [("photonmap", "globalphotons"), ("photons", "photons"), ("sppm", "photonsperiteration")]
+    {
+        let mut scene = Setup { camera, world: &world, ..Setup::default() }.scene(name);
+        scene.integrator = entity(name, &[(count, 5000)]);
+        let (film, _) = run(&scene, 2);
+        if name == "photons" {
+            assert!(mean(&luminance(&film)) > 0.0);
+        }
+    }
+}
+
 /// A point light within a ball of glass lights the room by its caustic alone, and all of its flux arrives: the wall of a closed
 /// sphere of radius R and reflectance a around it shows `a Phi / (4 pi R^2) / pi / (1 - a)` everywhere. Total reflection cannot
 /// happen: the light is at the middle.

@@ -110,9 +110,10 @@ impl LitMap {
 
 /// A radius that holds as many photons as are wanted wherever most of the photons are.
 fn fitting_radius(scene: &Scene, map: &PhotonMap, k: usize) -> f32 {
+    let diagonal = scene.bounds().diagonal().length();
+    let radius_of_few = if diagonal.is_finite() { RADIUS_OF_FEW * diagonal } else { 1.0 };
     if map.len() <= k {
-        let diagonal = scene.bounds().diagonal().length();
-        return if diagonal.is_finite() { RADIUS_OF_FEW * diagonal } else { 1.0 };
+        return radius_of_few;
     }
     let (mut found, mut radii) = (Neighbours::new(), Vec::new());
     let step = (map.len() / N_PROBES).max(1);
@@ -122,7 +123,9 @@ fn fitting_radius(scene: &Scene, map: &PhotonMap, k: usize) -> f32 {
         radii.push(farthest.sqrt());
     }
     radii.sort_by(f32::total_cmp);
-    radii[((radii.len() - 1) as f64 * PROBE_QUANTILE) as usize] * RADIUS_MARGIN
+    let radius = radii[((radii.len() - 1) as f64 * PROBE_QUANTILE) as usize] * RADIUS_MARGIN;
+    // Photons may all lie at one point, where they would be seen by nobody.
+    if radius > 0.0 { radius } else { radius_of_few }
 }
 
 /// The photons of one kind of path; others are dark.
