@@ -47,7 +47,7 @@ mod tests;
 pub use bands::Bands;
 pub use color_space::{ColorSpace, ColorSpaceName};
 pub use daylight::{chromaticity_of_temperature, daylight};
-pub use lift::{flux_to_xyz, lift};
+pub use lift::{Lifted, flux_to_xyz, lift};
 pub use named::{CAMERA_SENSORS, NamedSpectrum, known_but_missing, named_spectrum, named_spectrum_names};
 pub use sampled::Sampled;
 pub use sensor::{Sensor, SensorSettings};

@@ -15,7 +15,9 @@ use std::sync::OnceLock;
 use crate::cie::{CIE_Y_INTEGRAL, integrate_1nm, x_bar, y_bar, z_bar};
 use crate::matrix::{Matrix3, solve, transpose};
 use crate::tables::dense_lookup;
-use crate::{Bands, ColorSpace, ColorSpaceName, N_LAMBDA, Sampled, Wavelengths, Xyz, uplift_srgb};
+use crate::{
+    Bands, ColorSpace, ColorSpaceName, N_LAMBDA, Sampled, SigmoidPolynomial, Wavelengths, Xyz, uplift_srgb,
+};
 
 /// Standard deviations of the bands in nm, wide ones first.
 const WIDTHS_NM: [f32; 5] = [50.0, 25.0, 12.0, 6.0, 3.0];
@@ -48,20 +50,63 @@ pub fn flux_to_xyz(flux: Sampled, wavelengths: &Wavelengths) -> Xyz {
 /// Values at the wavelengths of a path of a light with this XYZ, not negative. What of it is negative or not finite counts as 0.
 #[must_use]
 pub fn lift(xyz: Xyz, wavelengths: &Wavelengths) -> Sampled {
-    let xyz = Xyz::from(xyz.to_array().map(|v| if v > 0.0 && v.is_finite() { v } else { 0.0 }));
-    let rgb = ColorSpace::get(ColorSpaceName::Srgb).to_rgb(xyz);
-    if wavelengths.is_bands() {
-        return wavelengths.of_bands(Bands::from_rgb(rgb));
+    Lifted::new(xyz).sample(wavelengths)
+}
+
+/// A light with a given XYZ, for those who ask for it at the wavelengths of many paths.
+#[derive(Clone, Copy, Debug)]
+pub struct Lifted {
+    xyz: Xyz,
+    form: Form,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Form {
+    Black,
+    /// D65 times a reflectance and a factor.
+    Smooth(SigmoidPolynomial, f32),
+    Bands(BandSum),
+}
+
+impl Lifted {
+    /// What of the XYZ is negative or not finite counts as 0.
+    #[must_use]
+    pub fn new(xyz: Xyz) -> Self {
+        let xyz = Xyz::from(xyz.to_array().map(|v| if v > 0.0 && v.is_finite() { v } else { 0.0 }));
+        Self { xyz, form: Form::of(xyz) }
     }
-    let largest = rgb[0].max(rgb[1]).max(rgb[2]);
-    if largest.is_nan() || largest <= 0.0 {
-        return Sampled::ZERO;
+
+    /// Values at the wavelengths of a path, not negative.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, wavelengths: &Wavelengths) -> Sampled {
+        if wavelengths.is_bands() {
+            let rgb = ColorSpace::get(ColorSpaceName::Srgb).to_rgb(self.xyz);
+            return wavelengths.of_bands(Bands::from_rgb(rgb));
+        }
+        match &self.form {
+            Form::Black => Sampled::ZERO,
+            Form::Smooth(reflectance, factor) => {
+                reflectance.sample(wavelengths) * white(wavelengths) * *factor
+            }
+            Form::Bands(sum) => sum.sample(wavelengths),
+        }
     }
-    if rgb.iter().all(|v| *v >= INSIDE * largest) {
-        let scale = 2.0 * largest;
-        return uplift_srgb(rgb.map(|v| v / scale)).sample(wavelengths) * white(wavelengths) * scale;
+}
+
+impl Form {
+    fn of(xyz: Xyz) -> Self {
+        let rgb = ColorSpace::get(ColorSpaceName::Srgb).to_rgb(xyz);
+        let largest = rgb[0].max(rgb[1]).max(rgb[2]);
+        if largest.is_nan() || largest <= 0.0 {
+            return Self::Black;
+        }
+        if rgb.iter().all(|v| *v >= INSIDE * largest) {
+            let scale = 2.0 * largest;
+            return Self::Smooth(uplift_srgb(rgb.map(|v| v / scale)), scale);
+        }
+        Self::Bands(BandSum::of(xyz))
     }
-    BandSum::of(xyz).sample(wavelengths)
 }
 
 /// D65 with Y = 1.

@@ -103,6 +103,31 @@ impl<F: FnMut(Neighbour)> Search for Within<F> {
     }
 }
 
+/// The nearest point of those that are accepted.
+pub(super) struct NearestOf<F> {
+    pub(super) found: Option<Neighbour>,
+    pub(super) limit_squared: f32,
+    pub(super) accepts: F,
+}
+
+impl<F: FnMut(Neighbour) -> bool> Search for NearestOf<F> {
+    #[inline(always)]
+    fn limit_squared(&self) -> f32 {
+        self.limit_squared
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, distance_squared: f32, place: u32) {
+        let point = Neighbour { index: place, distance_squared };
+        // Of equally near ones that of lower place, in whatever order they are met.
+        let is_behind = |found: Neighbour| distance_squared == found.distance_squared && found.index < place;
+        if !self.found.is_some_and(is_behind) && (self.accepts)(point) {
+            self.found = Some(point);
+            self.limit_squared = distance_squared;
+        }
+    }
+}
+
 impl PackedPoints {
     /// The points in order of a tree, built in parallel on the current rayon pool, and for each place the index of the point
     /// that is there. Points that are not finite are left out.
@@ -186,6 +211,20 @@ impl PackedPoints {
         if k > 0 {
             self.search(p, &mut Nearest { found, name: |place| place });
         }
+    }
+
+    /// The nearest to `p` of the points that are accepted and no farther than `max_radius`; of equally near ones that of lower
+    /// place. Points that are farther than one that was accepted are not asked about.
+    #[must_use]
+    pub fn nearest_of(
+        &self,
+        p: Point3,
+        max_radius: f32,
+        accepts: impl FnMut(Neighbour) -> bool,
+    ) -> Option<Neighbour> {
+        let mut search = NearestOf { found: None, limit_squared: square_of_radius(max_radius), accepts };
+        self.search(p, &mut search);
+        search.found
     }
 
     /// Shows all points no farther than `radius` from `p`, by their places, in no particular order (but always in the same).

@@ -264,6 +264,34 @@ fn packed_points_are_read_again() {
     }
 }
 
+/// The nearest point of those that are accepted is the first accepted one of all in order of distance, then of place.
+#[test]
+fn nearest_of_some() {
+    let mut rng = Rng::new(9, 0);
+    for n in [0_u32, 1, 16, 40, 3000] {
+        let mut points: Vec<Point3> = (0..n).map(|_| point_in_cube(&mut rng, 1.0)).collect();
+        points.extend(points.clone());
+        let (packed, order) = PackedPoints::new(&points);
+        let ordered: Vec<Point3> = order.iter().map(|i| points[*i as usize]).collect();
+        let near = points.iter().step_by(200).copied();
+        let places: Vec<Point3> = near.chain((0..100).map(|_| point_in_cube(&mut rng, 1.2))).collect();
+        for p in places {
+            for (max_radius, modulus) in [(f32::INFINITY, 1), (0.3, 3), (f32::INFINITY, 97), (0.0, 1)] {
+                let all = search_all(&ordered, p, usize::MAX, max_radius);
+                let expected = all.into_iter().find(|(_, place)| place % modulus == 0);
+                let found = packed.nearest_of(p, max_radius, |near| near.index % modulus == 0);
+                let found = found.map(|near| (near.distance_squared.to_bits(), near.index));
+                assert_eq!(found, expected, "{n} points, within {max_radius} of {p:?}");
+            }
+        }
+        for nothing in [f32::NAN, -1.0] {
+            assert_eq!(packed.nearest_of(Point3::splat(0.0), nothing, |_| true), None);
+        }
+        assert_eq!(packed.nearest_of(Point3::splat(f32::NAN), 1.0, |_| true), None);
+        assert_eq!(packed.nearest_of(Point3::splat(0.0), f32::INFINITY, |_| false), None);
+    }
+}
+
 /// Bounds of no points are empty.
 #[test]
 fn bounds_of_points() {

@@ -179,6 +179,23 @@ fn coated_metals_agree_with_paths() {
     }
 }
 
+/// EMI-10: a table with a rough coat casts no caustics, so that photons of a large light are aimed at the small ball above it: most
+/// of those that are sent arrive.
+#[test]
+fn rough_coats_are_no_targets() {
+    let world = "LightSource \"infinite\"
+        Material \"coateddiffuse\" \"float roughness\" 0.2
+        Shape \"bilinearmesh\" \"point3 P\" [-3 -1 -3  3 -1 -3  -3 -1 3  3 -1 3]
+        AttributeBegin Translate 0 -0.7 0 Material \"dielectric\" Shape \"sphere\" \"float radius\" 0.2 AttributeEnd";
+    let setup = Setup { size: [8, 8], camera: CAMERA, world, ..Setup::default() };
+    let mut scene = setup.scene("table");
+    scene.integrator = entity("photonmap", &[("globalphotons", 1000), ("causticphotons", 5000)]);
+    let (_, report) = run(&scene, 1);
+    let figure = |name: &str| report.iter().find(|entry| entry.name == name).map_or(0.0, |entry| entry.value);
+    let (emitted, stored) = (figure("caustic_photons_emitted"), figure("caustic_photons_stored"));
+    assert!(stored >= 5000.0 && emitted < 8.0 * stored, "{stored} of {emitted}");
+}
+
 /// One seed gives one image, whatever the number of threads.
 #[test]
 fn threads_do_not_matter() {

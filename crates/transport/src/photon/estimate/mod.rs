@@ -87,6 +87,7 @@ pub struct EstimateScratch {
     photons: Vec<PlanePhoton>,
     hull: Vec<u32>,
     ordered: Vec<(f32, f32)>,
+    weighted: Vec<(f32, u32)>,
 }
 
 /// What an estimate rests on.

@@ -10,7 +10,7 @@
 
 use std::f32::consts::FRAC_1_PI;
 
-use etendue_math::{Point3, Vector3};
+use etendue_math::{Point3, Vector3, hash64};
 use etendue_scene::bsdf::{Bsdf, BsdfKind, Lobes, TransportMode};
 use etendue_spectrum::{Sampled, Wavelengths, Xyz, lift};
 
@@ -18,6 +18,9 @@ use super::{Density, DensityEstimate, EstimateScratch, Photons};
 
 /// Cosines with the geometric normal count as no less: stored directions are as coarse as this, a degree.
 const SMALLEST_COSINE: f32 = 0.02;
+
+/// Photons of an estimate whose scattering is evaluated where that is itself a random walk.
+const N_CHOSEN: usize = 8;
 
 /// What photons say of a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -185,20 +188,59 @@ fn by_lobes(
         let wi = photons.wi(index);
         wants_side[usize::from(wi.dot(towards) < 0.0)].then_some((index, wi))
     };
-    let density = estimate.sum(
-        (place.p, bsdf.ng().as_vector()),
-        wanted,
-        photons,
-        scratch,
-        accept,
-        |weight, (index, wi)| {
-            let (power, weight) = (photons.power(index), weight * correct(wi));
-            for (lobes, sum) in lobes.iter().zip(&mut sums).filter(|(lobes, _)| !lobes.is_empty()) {
-                sum.add(power, weight, bsdf.eval(place.wo, wi, TransportMode::Radiance, *lobes));
-            }
-        },
-    );
+    let mut add = |power: Xyz, weight: f32, wi: Vector3| {
+        for (lobes, sum) in lobes.iter().zip(&mut sums).filter(|(lobes, _)| !lobes.is_empty()) {
+            sum.add(power, weight, bsdf.eval(place.wo, wi, TransportMode::Radiance, *lobes));
+        }
+    };
+    let tangent = (place.p, bsdf.ng().as_vector());
+    let density = if matches!(bsdf.kind(), BsdfKind::Layered(_)) {
+        let mut all = std::mem::take(&mut scratch.weighted);
+        all.clear();
+        let density = estimate.sum(tangent, wanted, photons, scratch, accept, |weight, (index, wi)| {
+            all.push((weight * correct(wi), index));
+        });
+        choose(place.p, &all, photons, |index, weight| add(photons.power(index), weight, photons.wi(index)));
+        scratch.weighted = all;
+        density
+    } else {
+        estimate.sum(tangent, wanted, photons, scratch, accept, |weight, (index, wi)| {
+            add(photons.power(index), weight * correct(wi), wi);
+        })
+    };
     let [diffuse, glossy] = sums.map(|sum| sum.radiance(density.per_area, place.lambda));
     let radiance = diffuse + glossy;
     RadianceEstimate { radiance, density }
+}
+
+/// Chooses a few of the photons at random, evenly along their list and in proportion to power, and weighs them so that the
+/// expectation of sums over them is that of all. For surfaces that cost a random walk for each photon: their noise, and that
+/// of the choice, goes as that of other walks does, with the samples of the pixel.
+fn choose(p: Point3, all: &[(f32, u32)], photons: &impl Photons, mut show: impl FnMut(u32, f32)) {
+    let share = |(weight, index): &(f32, u32)| {
+        let Xyz { x, y, z } = photons.power(*index);
+        weight * (x + y + z)
+    };
+    let step = all.iter().map(share).sum::<f32>() / N_CHOSEN as f32;
+    let is_sound = step > 0.0 && step.is_finite();
+    if all.len() <= N_CHOSEN || !is_sound {
+        all.iter().for_each(|(weight, index)| show(*index, *weight));
+        return;
+    }
+    // The place is as random as any number, and the choice the same whoever asks.
+    let bits = hash64(&[p.x, p.y, p.z].map(|v| u64::from(v.to_bits())));
+    let mut next = step * (bits >> 40) as f32 / (1 << 24) as f32;
+    let mut passed = 0.0;
+    for photon in all {
+        let of_this = share(photon);
+        passed += of_this;
+        let mut n = 0;
+        while next < passed {
+            n += 1;
+            next += step;
+        }
+        if n > 0 {
+            show(photon.1, photon.0 * (n as f32 * step / of_this));
+        }
+    }
 }

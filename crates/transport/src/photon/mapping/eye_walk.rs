@@ -22,7 +22,7 @@ use etendue_scene::bsdf::{Bsdf, BsdfKind, BsdfSample, Lobes, TransportMode};
 use etendue_scene::light::LightId;
 use etendue_scene::medium::MediumId;
 use etendue_scene::scene::Surface;
-use etendue_spectrum::{Sampled, lift};
+use etendue_spectrum::Sampled;
 
 use super::lit_map::{LitMap, wide_lobes};
 use super::precomputed::Precomputed;
@@ -551,12 +551,8 @@ fn ask(
     if let (Some(irradiance), BsdfKind::Diffuse(diffuse), true) = (irradiance, bsdf.kind(), is_flat) {
         let (p, ng) = (surface.point.p, surface.point.ng.as_vector());
         let n = if ng.dot(surface.wo) < 0.0 { -ng } else { ng };
-        if let Some(e) = irradiance.irradiance(p, n, map.max_radius, &mut scratch.found) {
-            return if e.y > 0.0 {
-                lift(e, path.lambda) * diffuse.reflectance * FRAC_1_PI
-            } else {
-                Sampled::ZERO
-            };
+        if let Some(irradiance) = irradiance.irradiance(p, n, map.max_radius) {
+            return irradiance.sample(path.lambda) * diffuse.reflectance * FRAC_1_PI;
         }
     }
     map.radiance(surface, (bsdf, lobes), path.lambda, scratch).0

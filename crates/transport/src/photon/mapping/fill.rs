@@ -28,8 +28,6 @@ pub(super) struct Shot {
     n: Normal3,
 }
 
-/// The most photons that are emitted for each one that is to be stored.
-const MOST_EMITTED: u64 = 30;
 /// The least that are emitted: without any by then, there is nothing to be found.
 const LEAST_EMITTED: u64 = 20_000;
 /// After so many in vain there is nothing to be found, such as caustics where nothing mirrors or refracts.
@@ -57,7 +55,7 @@ pub(crate) fn trace_map(
 ) -> Option<Traced> {
     let mut shots: Vec<Shot> = Vec::new();
     let mut n_emitted = 0;
-    let most = plan.n_photons.saturating_mul(MOST_EMITTED).max(LEAST_EMITTED);
+    let most = plan.n_photons.saturating_mul(plan.content.most_emitted()).max(LEAST_EMITTED);
     // Of photons that branch few are enough to tell how many are kept.
     let first = if plan.walk.absorption == Absorption::Branch { 1 << 11 } else { 1 << 20 };
     let mut next = if emitter.is_dark() { 0 } else { (plan.n_photons / 4).min(first) };

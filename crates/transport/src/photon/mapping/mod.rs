@@ -38,7 +38,7 @@ pub(super) use settings::{
     n_parameters, spec, with_shared,
 };
 
-use self::fill::Traced;
+use self::fill::{Arrival, Traced};
 use self::precomputed::Precomputed;
 use crate::integrator::{Control, Integrator, PassEnd, Passes, ReportEntry};
 use crate::lpe::PathExpressions;
@@ -157,8 +157,11 @@ const CAUSTIC_NAMES: MapNames = MapNames {
 impl Maps {
     /// `None` if the render was cancelled meanwhile.
     fn new(scene: &Scene, settings: &MappingSettings, control: &Control<'_>) -> Option<Self> {
-        let (global, global_irradiance, is_dark) = prepare(scene, settings.global_plan(scene), control)?;
-        let (caustic, caustic_irradiance, _) = prepare(scene, settings.caustic_plan(scene), control)?;
+        let global = Prepared::new(scene, settings.global_plan(scene), &[], control)?;
+        // Photons of the global map tell where it is dark between caustics.
+        let caustic = Prepared::new(scene, settings.caustic_plan(scene), &global.arrivals, control)?;
+        let (is_dark, global_irradiance, global) = (global.is_dark, global.irradiance, global.map);
+        let (caustic_irradiance, caustic) = (caustic.irradiance, caustic.map);
         let global_probe = Probe::new(scene, &global, settings.sharp_alpha);
         let caustic_probe = Probe::new(scene, &caustic, settings.sharp_alpha);
         Some(Self {
@@ -174,17 +177,31 @@ impl Maps {
     }
 }
 
-/// A map, irradiance that is computed before, and whether no light sends photons. `None` if the render was cancelled meanwhile.
-fn prepare(
-    scene: &Scene,
-    plan: MapPlan,
-    control: &Control<'_>,
-) -> Option<(LitMap, Option<Precomputed>, bool)> {
-    let (Traced { map, arrivals, place_step }, is_dark) = obtain(scene, &plan, control)?;
-    let map = LitMap::new(scene, &plan, map);
-    let is_wanted = plan.place_step > 0 && place_step > 0;
-    let irradiance = is_wanted.then(|| Precomputed::new(&map, &arrivals, place_step, control));
-    (!control.is_cancelled()).then_some((map, irradiance, is_dark))
+/// A map, ready to be asked.
+#[derive(Debug)]
+struct Prepared {
+    map: LitMap,
+    irradiance: Option<Precomputed>,
+    /// Places where its photons arrived.
+    arrivals: Vec<Arrival>,
+    /// No light sends photons.
+    is_dark: bool,
+}
+
+impl Prepared {
+    /// Irradiance is computed before at places of the map's own and at these others. `None` if the render was cancelled
+    /// meanwhile.
+    fn new(scene: &Scene, plan: MapPlan, others: &[Arrival], control: &Control<'_>) -> Option<Self> {
+        let (Traced { map, arrivals, place_step }, is_dark) = obtain(scene, &plan, control)?;
+        let map = LitMap::new(scene, &plan, map);
+        let is_wanted = plan.place_step > 0 && place_step > 0;
+        let irradiance = is_wanted.then(|| {
+            // Where there is no photon it is dark, which the map tells as fast.
+            let others = if map.map.is_empty() { &[] } else { others };
+            Precomputed::new(&map, &[&arrivals, others].concat(), control)
+        });
+        (!control.is_cancelled()).then_some(Self { map, irradiance, arrivals, is_dark })
+    }
 }
 
 /// Camera paths that ask maps, with memory for each thread.

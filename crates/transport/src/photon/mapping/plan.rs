@@ -37,6 +37,12 @@ impl Content {
         }
     }
 
+    /// The most photons that are emitted for each one that is to be stored.
+    pub(super) const fn most_emitted(self) -> u64 {
+        // Where so few of those arrive that were aimed, caustics are faint.
+        if matches!(self, Self::Caustic) { 10 } else { 30 }
+    }
+
     /// True if a photon may yet come to what is kept, from a surface with these sharp lobes.
     pub(super) fn may_follow(self, trail: Trail, is_sharp: bool) -> bool {
         self != Self::Caustic || is_sharp && (trail.is_empty() || trail.is_caustic())
@@ -82,11 +88,11 @@ const CAUSTIC_PHOTONS: std::ops::RangeInclusive<u64> = 200_000..=4_000_000;
 /// Bytes of a photon in a map.
 const PHOTON_BYTES: f32 = 20.5;
 /// Bytes of irradiance that is computed before, at one place.
-const PLACE_BYTES: f32 = 41.0;
+const PLACE_BYTES: f32 = 61.0;
 
-/// Photons that fit into a share of memory in megabytes.
-fn photons_within(megabytes: f32, place_step: u32) -> u64 {
-    let places = if place_step > 0 { PLACE_BYTES / place_step as f32 } else { 0.0 };
+/// Photons that fit into a share of memory in megabytes, where irradiance of so many maps is computed before at one of `place_step`.
+fn photons_within(megabytes: f32, place_step: u32, n_maps: f32) -> u64 {
+    let places = if place_step > 0 { n_maps * PLACE_BYTES / place_step as f32 } else { 0.0 };
     (megabytes * 1e6 / (PHOTON_BYTES + places)) as u64
 }
 
@@ -95,7 +101,7 @@ impl MappingSettings {
     #[must_use]
     pub(crate) fn global_plan(&self, scene: &Scene) -> MapPlan {
         let by_default =
-            || self.memory.map_or(GLOBAL_PHOTONS, |all| photons_within(0.5 * all, self.precompute));
+            || self.memory.map_or(GLOBAL_PHOTONS, |all| photons_within(0.5 * all, self.precompute, 2.0));
         MapPlan {
             n_photons: self.global_photons.map_or_else(by_default, u64::from),
             content: Content::All,
@@ -113,12 +119,11 @@ impl MappingSettings {
     /// The caustic map of a scene.
     #[must_use]
     pub(crate) fn caustic_plan(&self, scene: &Scene) -> MapPlan {
-        let precompute = self.precompute.min(1);
         let by_pixels = || {
             let n_pixels = scene.film.crop.n_pixels() as u64;
             n_pixels.clamp(*CAUSTIC_PHOTONS.start(), *CAUSTIC_PHOTONS.end())
         };
-        let by_default = || self.memory.map_or_else(by_pixels, |all| photons_within(0.5 * all, precompute));
+        let by_default = || self.memory.map_or_else(by_pixels, |all| photons_within(0.5 * all, self.precompute, 1.0));
         MapPlan {
             n_photons: self.caustic_photons.map_or_else(by_default, u64::from),
             content: Content::Caustic,
@@ -127,7 +132,7 @@ impl MappingSettings {
             k: self.caustic_k as usize,
             max_radius: self.caustic_radius,
             estimate: self.estimate,
-            place_step: precompute as usize,
+            place_step: self.precompute as usize,
             parameter: "causticmap",
             file: self.caustic_file.clone(),
         }
