@@ -165,7 +165,7 @@ const OWN_PARAMETERS: [ParameterSpec; 19] = [
         "integer",
         "4",
         "",
-        "irradiance is computed before at one of so many photons of the global map, and at all of the caustic map; 0: not",
+        "irradiance is computed before at one of so many photons of each map; 0: not",
     ),
     spec("maxdepth", "integer", "32", "", "most scattering events of a walk from the camera"),
     MAX_PHOTON_DEPTH,
