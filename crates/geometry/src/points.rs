@@ -12,7 +12,6 @@ mod item;
 
 mod packed;
 mod tree;
-mod wide;
 
 mod grid;
 mod growing_tree;

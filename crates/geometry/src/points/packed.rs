@@ -14,11 +14,10 @@ use etendue_math::Point3;
 
 use super::found::{Neighbour, Neighbours, square_of_radius};
 use super::item::{Item, finite_items, longest_axis};
-use super::wide;
 use crate::bvh::vec_in_large_pages;
 
 /// Points of a bucket. With 8 questions take 1.15 times as long, and memory is much the same.
-pub(super) const BUCKET: usize = 16;
+const BUCKET: usize = 16;
 
 /// Buckets that one thread puts together.
 const BUCKETS_PER_TASK: usize = 1 << 10;
@@ -44,7 +43,7 @@ struct Split {
 /// Points side by side; missing ones are NaN, which is near to nothing.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(super) struct Bucket(pub(super) [[f32; BUCKET]; 3]);
+struct Bucket([[f32; BUCKET]; 3]);
 
 /// Points that were said to be in the order of a tree are not, or not all of them are finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -232,21 +231,10 @@ impl PackedPoints {
         self.search(p, &mut Within { limit_squared: square_of_radius(radius), visit });
     }
 
+    /// Shows the search what is near enough.
     #[inline]
     pub(super) fn search(&self, p: Point3, search: &mut impl Search) {
-        if !wide::search(self, [p.x, p.y, p.z], search) {
-            self.search_by([p.x, p.y, p.z], search, Bucket::measure);
-        }
-    }
-
-    /// Visits what is near enough; `measure` is [`Bucket::measure`] or does the same in another way.
-    #[inline(always)]
-    pub(super) fn search_by(
-        &self,
-        p: [f32; 3],
-        search: &mut impl Search,
-        measure: impl Fn(&Bucket, [f32; 3], f32, &mut [f32; BUCKET]) -> u32,
-    ) {
+        let p = [p.x, p.y, p.z];
         if self.buckets.is_empty() {
             return;
         }
@@ -266,7 +254,7 @@ impl PackedPoints {
             }
             let mut distances = [0.0; BUCKET];
             let bucket = &self.buckets[node.first as usize];
-            let mut is_near = measure(bucket, p, search.limit_squared(), &mut distances);
+            let mut is_near = bucket.measure(p, search.limit_squared(), &mut distances);
             while is_near != 0 {
                 let lane = is_near.trailing_zeros() as usize % BUCKET;
                 is_near &= is_near - 1;
@@ -343,7 +331,7 @@ impl Bucket {
 
     /// Squares of the distances of all points, and a bit for each that is no farther than the limit.
     #[inline(always)]
-    pub(super) fn measure(&self, p: [f32; 3], limit_squared: f32, distances: &mut [f32; BUCKET]) -> u32 {
+    fn measure(&self, p: [f32; 3], limit_squared: f32, distances: &mut [f32; BUCKET]) -> u32 {
         let [xs, ys, zs] = &self.0;
         for lane in 0..BUCKET {
             let (x, y, z) = (xs[lane] - p[0], ys[lane] - p[1], zs[lane] - p[2]);
