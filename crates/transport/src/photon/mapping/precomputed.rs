@@ -21,7 +21,7 @@ use crate::photon::estimate::{EstimateScratch, irradiance};
 /// The least cosine between similar normals.
 const LEAST_COSINE: f32 = 0.9;
 /// How far a place reaches, as a share of the radius of its estimate. Of 100 photons in a disc, one in four of which is a place, none
-/// lies so near to a point with probability exp(-25 0.5^2) = 0.002.
+/// lies so near to a point with probability exp(-25 0.5^2) = 0.002; of 50 photons, 0.04.
 const REACH: f32 = 0.5;
 /// Places of a task: results are the same for any number of threads.
 const PLACES_PER_TASK: usize = 1024;
