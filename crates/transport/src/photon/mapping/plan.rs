@@ -123,7 +123,8 @@ impl MappingSettings {
             let n_pixels = scene.film.crop.n_pixels() as u64;
             n_pixels.clamp(*CAUSTIC_PHOTONS.start(), *CAUSTIC_PHOTONS.end())
         };
-        let by_default = || self.memory.map_or_else(by_pixels, |all| photons_within(0.5 * all, self.precompute, 1.0));
+        let by_default =
+            || self.memory.map_or_else(by_pixels, |all| photons_within(0.5 * all, self.precompute, 1.0));
         MapPlan {
             n_photons: self.caustic_photons.map_or_else(by_default, u64::from),
             content: Content::Caustic,
