@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use etendue_geometry::Geometry;
 use etendue_geometry::points::{Neighbours, PointTree};
-use etendue_math::{Point3, Rng, Sampler, SamplerSettings};
+use etendue_math::{Point3, Rng, Sampler, SamplerSettings, Vector3};
 use etendue_scene::Film;
 use etendue_spectrum::flux_to_xyz;
+use etendue_transport::photon::estimate::{DensityEstimate, EstimateScratch, MapEstimate};
 use etendue_transport::photon::{Onward, PhotonEmitter, PhotonMap, PhotonWalk, StoredPhoton, trace_photons};
 use etendue_transport::{Stop, Unobserved, render};
 use rayon::prelude::*;
@@ -154,8 +155,9 @@ fn look_up_task(n_points: u32) -> Task {
     })
 }
 
-/// Photons of the Cornell box: their ways from surface to surface, the map of those that arrive, and its nearest 50.
-fn photon_tasks(n_photons: u32) -> [Task; 3] {
+/// Photons of the Cornell box: their ways from surface to surface, the map of those that arrive, its nearest 50, and estimates
+/// of irradiance by 50 and by 200.
+fn photon_tasks(n_photons: u32) -> [Task; 5] {
     let scene = Arc::new(StudyScene::cornell_box().build());
     let emitter = PhotonEmitter::new(&scene);
     let trace = move || {
@@ -178,7 +180,13 @@ fn photon_tasks(n_photons: u32) -> [Task; 3] {
         photons
     };
     let photons = trace();
-    let map = PhotonMap::from_photons(&photons, n_photons.into());
+    let map = Arc::new(PhotonMap::from_photons(&photons, n_photons.into()));
+    // What scatters to where photons come from faces them, so that their direction serves as a normal.
+    let lit: Arc<[_]> = photons.iter().step_by(32).map(|photon| (photon.position, photon.wi)).collect();
+    let estimates = [
+        estimate_task(("estimates of 50 photons", "estimates_50"), &map, &lit, 50),
+        estimate_task(("estimates of 200 photons", "estimates_200"), &map, &lit, 200),
+    ];
     // Neither sorted nor by walls: photons arrive anywhere.
     let places: Vec<Point3> = photons.iter().step_by(8).map(|photon| photon.position).collect();
     let ask = move || {
@@ -192,6 +200,7 @@ fn photon_tasks(n_photons: u32) -> [Task; 3] {
         places.par_chunks(CHUNK).for_each(find);
         places.len() as u64
     };
+    let [by_50, by_200] = estimates;
     [
         Task::new("photons traced", "photons_traced", move || {
             std::hint::black_box(trace());
@@ -201,7 +210,30 @@ fn photon_tasks(n_photons: u32) -> [Task; 3] {
             std::hint::black_box(PhotonMap::from_photons(&photons, n_photons.into())).len() as u64
         }),
         Task::new("look-ups of 50 photons", "photon_look_ups", ask),
+        by_50,
+        by_200,
     ]
+}
+
+/// Irradiance at these places, with these normals.
+fn estimate_task(
+    (name, key): (&'static str, &'static str),
+    map: &Arc<PhotonMap>,
+    places: &Arc<[(Point3, Vector3)]>,
+    k: usize,
+) -> Task {
+    let (map, places) = (Arc::clone(map), Arc::clone(places));
+    let estimate = MapEstimate { density: DensityEstimate::default(), k, max_radius: f32::INFINITY };
+    Task::new(name, key, move || {
+        let ask = |places: &[(Point3, Vector3)]| {
+            let mut scratch = EstimateScratch::default();
+            for place in places {
+                std::hint::black_box(estimate.irradiance(&map, *place, &mut scratch));
+            }
+        };
+        places.par_chunks(CHUNK).for_each(ask);
+        places.len() as u64
+    })
 }
 
 /// Numbers of the default sampler, in pairs: 64 for each sample of a row of pixels.
