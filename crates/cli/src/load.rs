@@ -23,6 +23,8 @@ pub(crate) struct Overrides {
     pub(crate) resolution: Option<[i32; 2]>,
     /// Part of the image in shares of its size.
     pub(crate) crop: Option<[f32; 4]>,
+    /// Whether the film records what a denoiser needs.
+    pub(crate) features: bool,
     /// Integrator in place of the scene's.
     pub(crate) integrator: Option<Entity>,
     /// Word for the parameter `wavelengths` of the integrator.
@@ -91,6 +93,10 @@ fn apply(overrides: &Overrides, document: &mut Document) {
         let film = document.film.get_or_insert_with(|| Entity::new("rgb"));
         set(film, "cropwindow", Value::Floats(crop.to_vec()));
         film.parameters.retain(|p| p.name != "pixelbounds");
+    }
+    if overrides.features {
+        let film = document.film.get_or_insert_with(|| Entity::new("rgb"));
+        set(film, "features", Value::Bools(vec![true]));
     }
     if let Some(integrator) = &overrides.integrator {
         document.integrator = Some(integrator.clone());

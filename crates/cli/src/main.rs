@@ -8,6 +8,7 @@ mod bench;
 mod brdf;
 mod compare;
 mod convert;
+mod denoise;
 mod exposures;
 mod failure;
 mod falsecolor;
@@ -17,6 +18,7 @@ mod list;
 mod load;
 mod merge;
 mod metadata;
+mod oidn;
 mod outputs;
 mod photon_file;
 mod photons;
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
         Command::Probe(arguments) => probe::run(&arguments),
         Command::Hdr(arguments) => exposures::hdr(&arguments),
         Command::Fuse(arguments) => exposures::fusion(&arguments),
+        Command::Denoise(arguments) => denoise::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
         Command::Brdf(arguments) => brdf::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

@@ -122,7 +122,7 @@ fn average(parts: Vec<Part>) -> Result<Image> {
         }
         let share = part.n_passes as f64 / total as f64;
         for (index, name) in first_channels.iter().enumerate() {
-            let factor = if name == "variance.Y" { share * share } else { share };
+            let factor = if name.starts_with("variance.") { share * share } else { share };
             let channel = part.image.channel(name).expect("the name was listed");
             if sum.len() == index {
                 sum.push(vec![0.0; channel.values.len()]);

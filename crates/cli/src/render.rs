@@ -14,7 +14,7 @@ use crate::failure::{Failure, Result};
 use crate::load::{LoadedScene, Overrides, fingerprint, integrator_entity, load};
 use crate::progress::{CheckpointPlan, ShowProgress, Watch, catch_interruption, is_interrupted};
 use crate::stats::{RenderClock, RenderTime, Statistics};
-use crate::{metadata, outputs, preview, report, stats};
+use crate::{denoise, metadata, outputs, preview, report, stats};
 
 /// A render, as meant: what to do, where the results go.
 struct Job {
@@ -74,6 +74,7 @@ fn prepare(arguments: &RenderArguments) -> Result<Job> {
     let overrides = Overrides {
         resolution: arguments.resolution,
         crop: arguments.crop,
+        features: arguments.features || arguments.denoise.is_some(),
         integrator: arguments.integrator.as_deref().map(integrator_entity).transpose()?,
         wavelengths: arguments.wavelengths.map(|w| match w {
             WavelengthArgument::Hero => "hero",
@@ -84,7 +85,8 @@ fn prepare(arguments: &RenderArguments) -> Result<Job> {
     let layers = layers(arguments);
     let expressions = PathExpressions::new(&layers).map_err(|error| Failure::Usage(error.to_string()))?;
     outputs::check_images(&arguments.outputs)?;
-    let others = || arguments.checkpoint.iter().chain(&arguments.stats);
+    outputs::check_images(arguments.denoise.as_slice())?;
+    let others = || arguments.checkpoint.iter().chain(&arguments.stats).chain(&arguments.denoise);
     for path in others() {
         outputs::check_file(path)?;
     }
@@ -187,7 +189,11 @@ fn write_outputs(arguments: &RenderArguments, job: &Job) -> Result<()> {
     if let Some(wish) = arguments.preview {
         preview::show_radiance(&image, wish);
     }
-    outputs::write_precious(&job.outputs, &image, outputs::exr_settings(arguments.exr))
+    outputs::write_precious(&job.outputs, &image, outputs::exr_settings(arguments.exr))?;
+    match &arguments.denoise {
+        Some(path) => denoise::after_render(&image, path, arguments.quiet),
+        None => Ok(()),
+    }
 }
 
 fn report_faults(film: &Film) {

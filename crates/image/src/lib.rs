@@ -6,6 +6,7 @@
 
 mod buffer;
 pub mod compare;
+pub mod denoise;
 mod encoding;
 pub mod exposures;
 pub mod falsecolor;

@@ -2,6 +2,7 @@
 
 mod brdf;
 mod compare;
+mod denoise;
 mod exposures;
 mod falsecolor;
 mod image;
@@ -17,6 +18,7 @@ use clap::{Parser, Subcommand};
 
 pub(crate) use brdf::BrdfArguments;
 pub(crate) use compare::{CompareArguments, MapArgument};
+pub(crate) use denoise::{DenoiseArguments, DenoiserArgument};
 pub(crate) use exposures::{FuseArguments, HdrArguments, ResponseArgument};
 pub(crate) use falsecolor::{
     FalsecolorArguments, PaletteArgument, ProbeArguments, QuantityArgument, SpreadArgument,
@@ -65,6 +67,8 @@ pub(crate) enum Command {
     Hdr(HdrArguments),
     /// Blend photographs by several exposures into one picture, without radiance
     Fuse(FuseArguments),
+    /// Remove noise from a render, guided by what `render --features` records
+    Denoise(DenoiseArguments),
     /// Run an experiment with the renderer: a table and a figure
     Study(StudyArguments),
     /// Look at how a material scatters light: curves, a lit ball, and how well it keeps the laws

@@ -45,6 +45,12 @@ pub(crate) struct RenderArguments {
     /// Part of the image to render, in shares of its size
     #[arg(long, value_name = "x0,x1,y0,y1", value_parser = parse_crop, allow_hyphen_values = true)]
     pub(crate) crop: Option<[f32; 4]>,
+    /// Record what `denoise` needs: features of the first surface, variances, two halves of the samples
+    #[arg(long)]
+    pub(crate) features: bool,
+    /// Write a denoised picture too; implies --features
+    #[arg(long, value_name = "OUT")]
+    pub(crate) denoise: Option<PathBuf>,
     /// Layer of the paths that an expression selects, such as caustic='LS+DE'; may repeat
     #[arg(long = "lpe", value_name = "NAME=EXPRESSION", value_parser = parse_named)]
     pub(crate) expressions: Vec<(String, String)>,

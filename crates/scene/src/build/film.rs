@@ -21,6 +21,13 @@ const RGB: &[ParameterSpec] = &[
     spec("whitebalance", "float", "0", "K", "temperature of the light that becomes white; 0 for none"),
     spec("maxcomponentvalue", "float", "inf", "", "samples are scaled down to this largest component"),
     spec("diagonal", "float", "35", "mm", "diagonal of the sensor, for lens files"),
+    spec(
+        "features",
+        "bool",
+        "false",
+        "",
+        "record what a denoiser needs: features, variances, two halves of the samples",
+    ),
     spec("savefp16", "bool", "true", "", "accepted; channels are always written as 32-bit floats"),
 ];
 const GBUFFER: &[ParameterSpec] =
@@ -68,6 +75,7 @@ pub(super) fn build_film(document: &Document, context: &mut BuildContext<'_>) ->
     let resolution = read_resolution(&mut p);
     let crop = read_crop(&mut p, resolution);
     let kind = read_kind(&mut p, document);
+    let guides = p.bool("features", false);
     let sensor = read_sensor(&mut p, document);
     let max_component = p.float("maxcomponentvalue", f32::INFINITY);
     let filename = p.string("filename", "pbrt.exr");
@@ -85,6 +93,7 @@ pub(super) fn build_film(document: &Document, context: &mut BuildContext<'_>) ->
         resolution,
         crop,
         kind,
+        guides,
         sensor,
         color_space: document.film_color_space,
         max_component,

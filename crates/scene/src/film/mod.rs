@@ -6,6 +6,7 @@
 //! bit of the result.
 
 mod exact_sum;
+mod guides;
 mod settings;
 mod splats;
 mod sums;
@@ -93,32 +94,49 @@ impl Features {
 pub struct FilmLayout {
     /// Names of the layers by path expression.
     pub layers: Vec<String>,
-    n_features: usize,
+    /// Positions among the values of [`Features`] of those that are recorded.
+    features: &'static [usize],
     n_buckets: usize,
+    /// Sums that a denoiser needs, or none.
+    n_guides: usize,
 }
+
+/// All positions of features.
+const ALL_FEATURES: [usize; Features::CHANNELS.len()] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14];
 
 impl FilmLayout {
     fn new(settings: &FilmSettings, layers: Vec<String>) -> Self {
-        let (n_features, n_buckets) = match settings.kind {
-            FilmKind::Rgb => (0, 0),
-            FilmKind::GBuffer(_) => (Features::CHANNELS.len(), 0),
-            FilmKind::Spectral { n_buckets, .. } => (0, n_buckets),
+        let few: &[usize] = if settings.guides { &guides::GUIDES } else { &[] };
+        let (features, n_buckets): (&[usize], _) = match settings.kind {
+            FilmKind::Rgb => (few, 0),
+            FilmKind::GBuffer(_) => (&ALL_FEATURES, 0),
+            FilmKind::Spectral { n_buckets, .. } => (few, n_buckets),
         };
-        Self { layers, n_features, n_buckets }
+        let n_guides = if settings.guides { guides::N_GUIDES } else { 0 };
+        Self { layers, features, n_buckets, n_guides }
+    }
+
+    /// Places of the features that guide a denoiser among those that are recorded.
+    fn guide_places(&self) -> impl Iterator<Item = usize> {
+        let is_all = self.features.len() > guides::GUIDES.len();
+        guides::GUIDES.into_iter().enumerate().map(move |(i, place)| if is_all { place } else { i })
     }
 
     /// Length of the record of a sample.
     fn record_len(&self) -> usize {
-        tile::EXTRA + self.n_features + self.n_buckets + N_COLOR * self.layers.len()
+        tile::EXTRA + self.features.len() + self.n_buckets + N_COLOR * self.layers.len() + self.n_guides
     }
 
     /// Names of the values of a pixel, in their order.
     fn channel_names(&self, settings: &FilmSettings) -> Vec<String> {
         let mut names: Vec<String> = CANONICAL_NAMES.map(str::to_owned).to_vec();
-        names.extend(Features::CHANNELS.iter().take(self.n_features).map(|name| (*name).to_owned()));
+        names.extend(self.features.iter().map(|place| Features::CHANNELS[*place].to_owned()));
         names.extend((0..self.n_buckets).map(|bucket| settings.bucket_name(bucket)));
         for layer in &self.layers {
             names.extend(["R", "G", "B"].map(|component| format!("{layer}.{component}")));
+        }
+        if self.n_guides > 0 {
+            names.extend(guides::names(&guides::GUIDES.map(|place| Features::CHANNELS[place])));
         }
         names
     }

@@ -95,6 +95,8 @@ pub struct FilmSettings {
     pub crop: PixelBounds,
     /// Channels.
     pub kind: FilmKind,
+    /// Whether it records what a denoiser needs: features, variances and two halves of the samples.
+    pub guides: bool,
     /// Response of the sensor, with exposure.
     pub sensor: Sensor,
     /// Colour space of the output.

@@ -15,7 +15,7 @@ use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;
 
 use super::tile::{COLOR, WEIGHT};
-use super::{Film, FilmLayout, FilmSettings, N_COLOR, PixelBounds, SampleFaults, TileSamples};
+use super::{Film, FilmLayout, FilmSettings, N_COLOR, PixelBounds, SampleFaults, TileSamples, guides};
 use crate::filter::Filter;
 
 /// Strips of rows that are added up in parallel.
@@ -178,18 +178,22 @@ fn splat_len(layout: &FilmLayout) -> usize {
 }
 
 fn join_record(record: &mut [f32], sums: &[f64], scale: f64, layout: &FilmLayout, settings: &FilmSettings) {
+    let (record, guides) = record.split_at_mut(record.len() - layout.n_guides);
     let weight = std::mem::replace(&mut record[WEIGHT], 1.0);
     if weight != 1.0 {
         record[COLOR..].iter_mut().for_each(|value| *value *= weight);
     }
     let (color, extra) = record[COLOR..].split_at_mut(N_COLOR);
-    let targets = color.iter_mut().chain(&mut extra[layout.n_features..]);
+    let targets = color.iter_mut().chain(&mut extra[layout.features.len()..]);
     for (target, sum) in targets.zip(sums) {
         *target += (sum * scale) as f32;
     }
     color.copy_from_slice(&settings.limited([color[0], color[1], color[2]]));
-    for layer in extra[layout.n_features + layout.n_buckets..].chunks_exact_mut(N_COLOR) {
+    for layer in extra[layout.features.len() + layout.n_buckets..].chunks_exact_mut(N_COLOR) {
         layer.copy_from_slice(&settings.limited([layer[0], layer[1], layer[2]]));
+    }
+    if layout.n_guides > 0 {
+        guides::fill(guides, record, layout);
     }
 }
 

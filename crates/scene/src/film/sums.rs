@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::settings::PixelBounds;
 use super::tile::{COLOR, EXTRA, TileSamples, WEIGHT};
-use super::{CANONICAL_NAMES, ExactSum, FilmLayout, MOMENTS, N_COLOR};
+use super::{CANONICAL_NAMES, ExactSum, FilmLayout, MOMENTS, N_COLOR, guides};
 
 /// What went wrong while samples were added.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -299,11 +299,17 @@ impl FilmSums {
     pub fn develop(&self) -> Image {
         let mut image = Image::new(self.bounds.width() as usize, self.bounds.height() as usize);
         for (index, name) in self.names.iter().enumerate() {
-            if !MOMENTS.contains(&index) {
+            if !MOMENTS.contains(&index) && !guides::is_guide(name) {
                 image.channels.push(self.mean_channel(name.clone(), index));
             }
         }
         image.channels.push(self.variance_channel());
+        let n = self.n_passes() as f64;
+        for (name, channel) in guides::channels(&self.names) {
+            let pixels = self.weights.iter().zip(self.values.chunks_exact(self.stride()));
+            let values = pixels.map(|(weight, sums)| channel.value(weight.value(), sums, n)).collect();
+            image.channels.push(Channel { name, values });
+        }
         image
     }
 

@@ -15,6 +15,7 @@ fn settings(width: u32, height: u32) -> FilmSettings {
         resolution: [width, height],
         crop: PixelBounds { min: [0, 0], max: [width, height] },
         kind: FilmKind::Rgb,
+        guides: false,
         sensor: Sensor::cie1931(&SensorSettings::default()),
         color_space: ColorSpaceName::Srgb,
         max_component: f32::INFINITY,

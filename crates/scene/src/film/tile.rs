@@ -3,7 +3,7 @@
 
 use etendue_spectrum::{Sampled, Wavelengths};
 
-use super::{Features, FilmLayout, FilmSettings, N_COLOR, PixelBounds, SampleFaults};
+use super::{Features, FilmLayout, FilmSettings, N_COLOR, PixelBounds, SampleFaults, guides};
 
 /// One finished camera path.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +42,8 @@ pub struct FilmTile<'f> {
     settings: &'f FilmSettings,
     layout: &'f FilmLayout,
     samples: TileSamples,
+    /// Whether the samples belong to the second half of all.
+    is_second_half: bool,
 }
 
 impl<'f> FilmTile<'f> {
@@ -58,7 +60,14 @@ impl<'f> FilmTile<'f> {
             settings,
             layout,
             samples: TileSamples { bounds, pixels, values, faults: SampleFaults::default() },
+            is_second_half: false,
         }
+    }
+
+    /// Tells that the samples are those of a pass, which decides the half of the film that they belong to.
+    #[must_use]
+    pub fn of_pass(self, pass: u64) -> Self {
+        Self { is_second_half: guides::is_in_second_half(pass), ..self }
     }
 
     /// The pixels of this tile.
@@ -70,7 +79,7 @@ impl<'f> FilmTile<'f> {
     /// True if samples should come with [`Features`].
     #[must_use]
     pub const fn wants_features(&self) -> bool {
-        self.layout.n_features > 0
+        !self.layout.features.is_empty()
     }
 
     /// Adds one sample. NaN, infinite or negative radiance is counted and taken as black; debug builds panic.
@@ -95,8 +104,10 @@ impl<'f> FilmTile<'f> {
     fn add_extra(&mut self, radiance: Sampled, sample: &PixelSample<'_>) {
         let samples = &mut self.samples;
         let end = samples.values.len() - EXTRA + self.layout.record_len();
-        if self.layout.n_features > 0 {
-            samples.values.extend(sample.features.unwrap_or_default().to_array());
+        let start = samples.values.len() - EXTRA;
+        if !self.layout.features.is_empty() {
+            let features = sample.features.unwrap_or_default().to_array();
+            samples.values.extend(self.layout.features.iter().map(|place| features[*place]));
         }
         let first_bucket = samples.values.len();
         samples.values.resize(first_bucket + self.layout.n_buckets, 0.0);
@@ -105,6 +116,11 @@ impl<'f> FilmTile<'f> {
             samples.values.extend(self.settings.output_rgb(*layer, sample.lambda));
         }
         samples.values.resize(end, 0.0);
+        if self.layout.n_guides > 0 {
+            let (record, guides) = samples.values[start..].split_at_mut(end - start - self.layout.n_guides);
+            guides::set_half(guides, self.is_second_half);
+            guides::fill(guides, record, self.layout);
+        }
     }
 
     /// What was gathered, apart from the film, which may then change.

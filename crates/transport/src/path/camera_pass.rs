@@ -217,7 +217,8 @@ impl CameraPass<'_> {
                     return None;
                 }
                 let tracer = Tracer { camera_medium, ..Tracer::new(scene) };
-                let samples = self.run_tile(&tracer, pass, film.start_tile(bounds, memory), method);
+                let tile = film.start_tile(bounds, memory).of_pass(pass);
+                let samples = self.run_tile(&tracer, pass, tile, method);
                 control.tile_done(method.n_samples(bounds.n_pixels() as u64), tracer.counts());
                 Some(samples)
             })

@@ -12,6 +12,7 @@ fn film(max_component: f32, layers: &[&str]) -> Film {
         resolution: [40, 30],
         crop: PixelBounds { min: [3, 2], max: [37, 29] },
         kind: FilmKind::Rgb,
+        guides: false,
         sensor: Sensor::cie1931(&SensorSettings::default()),
         color_space: ColorSpaceName::Srgb,
         max_component,
