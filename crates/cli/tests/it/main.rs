@@ -7,6 +7,7 @@ mod bad_scenes;
 mod brdf;
 mod checkpoint;
 mod degenerate;
+mod denoise;
 mod formats;
 mod lights;
 mod listing;

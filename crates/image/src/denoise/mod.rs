@@ -9,12 +9,13 @@
 //!    the *other* half, so that the noise of a pixel does not choose its own weight ([`regression`]), at two bandwidths.
 //! 3. The squared error of each result is estimated by the other half, smoothed, and decides pixel by pixel between the
 //!    bandwidths.
-//! 4. The mean of the two halves is the result.
+//! 4. The mean of the two halves is the result, but for light that was lost, which every neighbourhood gets back ([`energy`]).
 //!
 //! Simplified: the paper chooses the bandwidth for each half, filters its maps of choices by non-local means and can run twice.
 //!
 //! Everything depends on the picture alone: no random numbers, and sums in an order that threads do not change.
 
+mod energy;
 mod fireflies;
 mod input;
 mod prefilter;
@@ -116,7 +117,8 @@ pub fn denoise(image: &Image, settings: &Settings) -> Result<Denoised, DenoiseEr
     };
     // One picture is filtered once.
     let results = if input.is_dual { vec![filtered(0), filtered(1)] } else { vec![filtered(0)] };
-    let pixels = select(&input, &results);
+    let mut pixels = select(&input, &results);
+    energy::give_back(&input, &mut pixels);
     let name = |(index, _): &(usize, _)| input::FEATURES[*index].0;
     let found: Vec<&str> = input.features.iter().map(name).collect();
     let all = input::FEATURES.iter().map(|(name, _)| *name);

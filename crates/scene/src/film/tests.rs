@@ -553,3 +553,59 @@ fn missing_passes_are_counted() {
     assert_eq!(film.sums().n_missing(&(6..9)), 3);
     assert_eq!(film.sums().n_missing(&(0..u64::MAX)), u64::MAX - 4);
 }
+
+/// At every number of passes the halves differ by four at most, by none at powers of two; from eight on they change after
+/// aligned fours.
+#[test]
+fn halves_are_even() {
+    let mut n_second = 0;
+    for n in 1..=256_u64 {
+        n_second += i64::from(guides::is_in_second_half(n - 1));
+        let difference = n as i64 - 2 * n_second;
+        assert!(difference.abs() <= 4, "{n}: {difference}");
+        assert!(!n.is_power_of_two() || n == 1 || difference == 0, "{n}: {difference}");
+    }
+    let half = guides::is_in_second_half;
+    assert!((8..256).all(|pass| half(pass) == half(pass - pass % 4)));
+}
+
+/// Variances are those of means, halves are means of their passes, and all survives a file.
+#[test]
+fn guides_tell_variances_and_halves() {
+    let settings = FilmSettings { guides: true, ..settings(1, 1) };
+    let mut film = Film::new(settings, vec!["direct".to_owned()]);
+    let lambda = Wavelengths::sample_visible(0.6);
+    let depths = [1.0, 2.0, 4.0, 9.0];
+    for (pass, depth) in depths.into_iter().enumerate() {
+        let bounds = film.settings().crop;
+        let mut tile = film.start_tile(bounds, TileSamples::default()).of_pass(pass as u64);
+        assert!(tile.wants_features());
+        let features = Some(Features { depth, albedo: [0.5; 3], ..Features::default() });
+        let radiance = Sampled::splat(depth);
+        tile.add([0, 0], &PixelSample { features, layers: &[radiance], ..sample(radiance, &lambda) });
+        let samples = tile.finish();
+        film.add_tiles(&[samples]);
+        film.note_pass(pass as u64);
+    }
+    check_near(values(&film, "depth.Z")[0], 4.0, 1e-6);
+    // The sum of squared deviations is 9 + 4 + 0 + 25; of a mean of four the variance is that over 3 times 4.
+    check_near(values(&film, "variance.depth.Z")[0], 38.0 / 12.0, 1e-5);
+    check_near(values(&film, "variance.Albedo.G")[0], 0.0, 1e-9);
+    let green = values(&film, "G")[0] / 4.0;
+    check_near(values(&film, "variance.G")[0], green * green * 38.0 / 12.0, 1e-4);
+    check_near(values(&film, "direct.G")[0], 4.0 * green, 1e-6);
+    // Passes 0 and 2 are the first half, 1 and 3 the second.
+    check_near(values(&film, "halfA.G")[0], 2.5 * green, 1e-6);
+    check_near(values(&film, "halfB.G")[0], 5.5 * green, 1e-6);
+
+    let mut image = film.develop();
+    image.channels.extend(film.sums().exact_channels());
+    // Files order channels by name.
+    image.channels.sort_by(|a, b| a.name.cmp(&b.name));
+    let mut again =
+        FilmSums::from_image(&image, film.settings().crop, film.settings().luminance_weights()).unwrap();
+    again.note_passes(0..4);
+    for channel in &again.develop().channels {
+        assert_eq!(Some(channel), image.channel(&channel.name));
+    }
+}
