@@ -19,12 +19,12 @@ fn every_method_records_features() {
     let folder = Folder::with_scene(ROOM);
     for method in [
         "path",
-        "photonmap:photons=2000",
+        "photonmap:globalphotons=2000,causticphotons=2000",
         "sppm:photonsperiteration=500",
         "whitted",
         "ao",
         "light",
-        "photons",
+        "photons:photons=2000",
     ] {
         let plain = folder.render("plain", &format!("--spp 4 --integrator {method}"));
         let image = folder.render("features", &format!("--spp 4 --features --integrator {method}"));
