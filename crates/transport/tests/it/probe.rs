@@ -17,7 +17,7 @@ fn upwards(x: f32, y: f32, z: f32) -> ProbePoint {
 
 fn read(name: &str, world: &str, points: &[ProbePoint]) -> Vec<Reading> {
     let scene = Setup { world, ..Setup::default() }.scene(name);
-    probe(&scene, points, &ProbeSettings { samples: 2048, seed: seed(name), ..ProbeSettings::default() })
+    probe(&scene, points, &ProbeSettings { samples: 16_384, seed: seed(name), ..ProbeSettings::default() })
 }
 
 /// Demands an expectation, and that an error of a share `resolution` would show.
@@ -90,9 +90,9 @@ fn inside_a_furnace() {
         lit("L", 1.0)
     );
     let readings = read("furnace", &world, &[upwards(0.3, 0.2, -0.4)]);
-    expect("furnace", readings[0].illuminance_lx, 2.0 * PI, 0.05);
-    expect("its direct part", readings[0].direct_lx, PI, 0.05);
-    expect("its wall", readings[0].luminance_cd_m2, 2.0, 0.05);
+    expect("furnace", readings[0].illuminance_lx, 2.0 * PI, 0.02);
+    expect("its direct part", readings[0].direct_lx, PI, 0.02);
+    expect("its wall", readings[0].luminance_cd_m2, 2.0, 0.02);
 }
 
 /// The standard error is honest: means of independent seeds spread as it says.
