@@ -85,7 +85,8 @@ pub fn pq_encode(luminance: f32) -> f32 {
     const C1: f64 = 3424.0 / 4096.0;
     const C2: f64 = 2413.0 / 4096.0 * 32.0;
     const C3: f64 = 2392.0 / 4096.0 * 32.0;
-    let share = f64::from(luminance.max(0.0).min(10_000.0)) / 10_000.0;
+    let shown = if luminance.is_nan() { 0.0 } else { luminance.clamp(0.0, 10_000.0) };
+    let share = f64::from(shown) / 10_000.0;
     let power = share.powf(M1);
     ((C1 + C2 * power) / (1.0 + C3 * power)).powf(M2) as f32
 }

@@ -204,7 +204,7 @@ impl FalseColors {
             let value = f64::from(values[index]);
             value.is_finite().then(|| ticks.partition_point(|tick| *tick <= value))
         };
-        for index in 0..values.len() {
+        for (index, pixel) in pixels.iter_mut().enumerate() {
             let right = (index % width + 1 < width).then_some(index + 1);
             let below = Some(index + width).filter(|i| *i < values.len());
             let own = band(index);
@@ -213,7 +213,7 @@ impl FalseColors {
                 own.is_some() && other.is_some() && own != other
             });
             if is_line {
-                pixels[index] = contrasting(pixels[index]);
+                *pixel = contrasting(*pixel);
             }
         }
     }

@@ -101,7 +101,7 @@ impl Field {
         let is_unsure = |pixel: usize| {
             let least = LEAST_ERROR * self.luminance[pixel];
             // Not a number is no certainty.
-            variance.is_none_or(|variance| !(variance[pixel] < least * least))
+            variance.is_none_or(|variance| variance[pixel].is_nan() || variance[pixel] >= least * least)
         };
         let firefly = |pixel: usize| {
             let limit = FACTOR * self.surroundings(pixel)?.max(floor);

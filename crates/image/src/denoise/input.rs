@@ -105,9 +105,10 @@ fn neighbours_mean(plane: &Plane, valid: &[f32], i: usize) -> f32 {
     let (x, y) = (i % plane.width, i / plane.width);
     let (mut sum, mut n) = (0.0_f32, 0.0_f32);
     for y in y.saturating_sub(2)..(y + 3).min(plane.height) {
-        for j in y * plane.width + x.saturating_sub(2)..y * plane.width + (x + 3).min(plane.width) {
-            if valid[j] > 0.0 {
-                sum += plane.values[j];
+        let near = y * plane.width + x.saturating_sub(2)..y * plane.width + (x + 3).min(plane.width);
+        for (value, is_valid) in plane.values[near.clone()].iter().zip(&valid[near]) {
+            if *is_valid > 0.0 {
+                sum += value;
                 n += 1.0;
             }
         }

@@ -165,8 +165,8 @@ fn fit(subject: Subject<'_>, center: usize, window: &[Weighted], part: &mut Part
     if total <= 0.0 {
         return;
     }
-    for i in 1..N_TERMS {
-        matrix[i][i] += total * (RIDGE + subject.noise[center][i]);
+    for (i, (row, noise)) in matrix.iter_mut().zip(&subject.noise[center]).enumerate().skip(1) {
+        row[i] += total * (RIDGE + noise);
     }
     let slopes = solve(&matrix, &sides);
     let width = subject.size[0];

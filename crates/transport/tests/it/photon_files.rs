@@ -27,7 +27,7 @@ fn scene(height: f32, integrator: Entity) -> Scene {
 fn few(name: &str) -> Entity {
     let counts: &[&str] =
         if name == "photonmap" { &["globalphotons", "causticphotons"] } else { &["photons"] };
-    counts.iter().fold(Entity::new(name), |entity, count| entity.with(*count, Value::Integers(vec![3000])))
+    counts.iter().fold(Entity::new(name), |entity, count| entity.with(count, Value::Integers(vec![3000])))
 }
 
 fn with_file(mut scene: Scene, parameter: &str, bytes: &[u8]) -> Scene {
