@@ -37,7 +37,7 @@ pub struct Spread {
 /// things beside bright ones stay dark. Colour and its halves change, and keep their sums up to rounding; the variance of
 /// fireflies becomes that of what they keep.
 ///
-/// Where the variance of pixels is known (`variance.Y`), bright pixels that are sure stay as they are: small lamps, stars.
+/// Where the variance of pixels is known (`variance.Y`, not 0 everywhere), bright pixels that are sure stay as they are: small lamps, stars.
 /// Pixels that are not finite stay, and count as black.
 #[must_use]
 pub fn spread_fireflies(image: &Image) -> Spread {
@@ -45,7 +45,9 @@ pub fn spread_fireflies(image: &Image) -> Spread {
         return Spread { image: image.clone(), n_fireflies: 0 };
     };
     let mut field = Field::new(image.width, &pixels);
-    let fireflies = field.find(image.channel("variance.Y").map(|channel| &channel.values[..]));
+    let variance = image.channel("variance.Y").map(|channel| &channel.values[..]);
+    // After a single sample per pixel it tells nothing.
+    let fireflies = field.find(variance.filter(|values| values.iter().any(|v| *v != 0.0)));
     for firefly in &fireflies {
         field.luminance[firefly.pixel] *= firefly.kept;
     }
