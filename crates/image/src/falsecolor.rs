@@ -37,8 +37,11 @@ impl Scale {
     /// From `low` to `high`; `None` unless both are finite, `low < high`, and for logarithms `low > 0`.
     #[must_use]
     pub fn new(spread: Spread, low: f64, high: f64) -> Option<Scale> {
-        let is_valid =
-            low.is_finite() && high.is_finite() && low < high && (high / low.max(f64::MIN_POSITIVE)) > 1.0;
+        let extent = match spread {
+            Spread::Linear => high - low,
+            Spread::Logarithmic => high / low - 1.0,
+        };
+        let is_valid = low.is_finite() && high.is_finite() && extent > 0.0 && extent.is_normal();
         (is_valid && (spread == Spread::Linear || low > 0.0)).then_some(Scale { spread, low, high })
     }
 
@@ -311,7 +314,9 @@ fn label(value: f64) -> String {
         let text = format!("{value:.6}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
-        format!("{value:e}")
+        let text = format!("{value:.5e}");
+        let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
     }
 }
 

@@ -119,3 +119,26 @@ fn legend() {
     // Small pictures grow by white so that the legend has room.
     assert_eq!(colors.draw(&[1.0], 1).height, LEAST_HEIGHT);
 }
+
+/// A linear scale may end at zero or below it; what leaves no room between its ends is none.
+#[test]
+fn scales_below_zero() {
+    let scale = Scale::new(Spread::Linear, -10.0, 0.0).expect("a scale");
+    assert_eq!((scale.place(-2.5), scale.ticks().len()), (Some(0.75), 11));
+    assert!(Scale::new(Spread::Linear, -4.0, -2.0).is_some());
+    for [low, high] in [[0.0, 0.0], [1.0, -1.0], [f64::MIN, f64::MAX], [f64::NAN, 1.0]] {
+        assert_eq!(Scale::new(Spread::Linear, low, high), None, "{low} {high}");
+    }
+    for [low, high] in [[0.0, 1.0], [-2.0, -1.0], [2.0, 1.0]] {
+        assert_eq!(Scale::new(Spread::Logarithmic, low, high), None, "{low} {high}");
+    }
+}
+
+/// Ticks show no digits of rounding.
+#[test]
+fn labels_are_short() {
+    assert_eq!(label(1.500_000_000_000_000_1e-4), "1.5e-4");
+    assert_eq!(label(3.0 * 1e-7), "3e-7");
+    assert_eq!(label(-2e6), "-2e6");
+    assert_eq!([label(0.0), label(0.3), label(1500.0)], ["0", "0.3", "1500"]);
+}
