@@ -166,6 +166,7 @@ fn print_json(measured: &Measured) {
     });
     if let Some(test) = &measured.z_test {
         object["z_pixels"] = json!(test.n_tested);
+        object["z_untested"] = json!(test.n_untested);
     }
     for (name, value) in rows(measured) {
         object[name] = json!(value);
@@ -182,6 +183,12 @@ fn print_lines(measured: &Measured) {
     print(&format!("mean            {}", three(result.mean_test)));
     print(&format!("reference       {}", three(result.mean_reference)));
     print(&format!("ratio           {}", three(result.channel_ratio)));
+    if let Some(test) = measured.z_test.as_ref().filter(|test| test.n_untested > 0) {
+        print(&format!(
+            "z_untested      {} of {} pixels differ but have no variance",
+            test.n_untested, result.n_pixels
+        ));
+    }
     if result.n_masked > 0 {
         let (n_test, n_reference) = (result.n_non_finite_test, result.n_non_finite_reference);
         print(&format!(

@@ -301,7 +301,10 @@ fn z_test() {
     silent.set_channel(VARIANCE, vec![0.0; silent.n_pixels()]);
     let mut broken = silent.clone();
     broken.channels[0].values[3] = f32::NAN;
-    assert_eq!(test(&silent, &broken).n_tested, 0);
+    broken.channels[0].values[2] = 1.5;
+    let nothing = test(&silent, &broken);
+    assert_eq!([nothing.n_tested, nothing.n_untested], [0, 1]);
+    assert!([nothing.rms, nothing.share_beyond, nothing.z_mean, nothing.p_mean].iter().all(|v| v.is_nan()));
 }
 
 /// Views have the pixels of both.

@@ -20,7 +20,9 @@ pub const BEYOND: f64 = 3.0;
 pub struct ZTest {
     /// Pixels with a variance, those that are tested.
     pub n_tested: usize,
-    /// Root mean square of z; 1 is expected.
+    /// Pixels that differ but are not tested, since there is no variance.
+    pub n_untested: usize,
+    /// Root mean square of z; 1 is expected. NaN, as all that follow, where no pixel is tested.
     pub rms: f64,
     /// Share of the pixels beyond [`BEYOND`]; 0.0027 is expected.
     pub share_beyond: f64,
@@ -48,13 +50,14 @@ impl ZTest {
         let (Some(a), Some(b)) = (luminances(test), luminances(reference)) else {
             return Err(CompareError::NoColor);
         };
+        let [rms, share_beyond, z_mean, p_mean] = [f64::NAN; 4];
         let mut result =
-            ZTest { n_tested: 0, rms: 0.0, share_beyond: 0.0, z_mean: 0.0, p_mean: 1.0, z: Vec::new() };
+            ZTest { n_tested: 0, n_untested: 0, rms, share_beyond, z_mean, p_mean, z: Vec::new() };
         let (mut squares, mut n_beyond, mut difference, mut variance) = (0.0, 0usize, 0.0, 0.0);
         for ((a, b), (va, vb)) in a.into_iter().zip(b).zip(va.values.iter().zip(&vb.values)) {
             let v = f64::from(*va) + f64::from(*vb);
             let z = (a - b) / v.sqrt();
-            let is_tested = v > 0.0 && z.is_finite();
+            let is_tested = v > 0.0 && v.is_finite() && z.is_finite();
             result.z.push(if is_tested { z as f32 } else { 0.0 });
             if is_tested {
                 result.n_tested += 1;
@@ -62,6 +65,8 @@ impl ZTest {
                 n_beyond += usize::from(z.abs() > BEYOND);
                 difference += a - b;
                 variance += v;
+            } else if a.is_finite() && b.is_finite() && a != b {
+                result.n_untested += 1;
             }
         }
         if result.n_tested > 0 {
