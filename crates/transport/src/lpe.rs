@@ -31,7 +31,7 @@ const MAX_OWN_LAYERS: usize = 4;
 const MAX_LAYERS: usize = MAX_EXPRESSIONS + MAX_OWN_LAYERS;
 
 /// Names that layers cannot have, since films have channels of these names.
-const RESERVED_NAMES: [&str; 7] = ["Albedo", "N", "Ns", "P", "depth", "sums", "variance"];
+const RESERVED_NAMES: [&str; 9] = ["Albedo", "N", "Ns", "P", "depth", "halfA", "halfB", "sums", "variance"];
 
 /// A scattering event along a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -69,6 +69,10 @@ fn refusals() {
     assert!(PathExpressions::new(&twice).is_err());
     let no_word = [("a b".to_owned(), "LE".to_owned())];
     assert!(PathExpressions::new(&no_word).is_err());
+    for taken in ["variance", "halfA", "halfB", "Albedo"] {
+        let error = PathExpressions::new(&[(taken.to_owned(), "LE".to_owned())]).expect_err(taken);
+        assert!(error.to_string().contains("another layer"), "{error}");
+    }
 }
 
 /// A recorder puts each contribution into every layer whose expression selects it, and into no other.
