@@ -402,3 +402,31 @@ fn automatic_exposure_gives_the_key() {
     assert!((automatic_exposure(&image, 0.18) - (0.18_f32 / 8.0).log2()).abs() < 1e-4);
     assert_eq!(automatic_exposure(&Image::from_fn(2, 1, |_, _| [0.0; 3]), 0.18), 0.0);
 }
+
+/// The ranges of the problem (TONE-1): what the world has, what eyes take and what displays show; and every global operator brings
+/// that of the world to that of a display, with white paper in the sun at least as bright as any other.
+#[test]
+fn the_range_of_the_world_fits_a_display() {
+    // Sun over moon, white over black surfaces; receptors, pupil, adaptation.
+    let (world, eye) = (800_000.0_f32 * 100.0, 100.0_f32 * 10.0 * 10_000.0);
+    assert_eq!((world, eye), (8e7, 1e7));
+    let illuminated = |light: f32| [1.0, 10.0, 100.0].map(|paper| light * paper);
+    let lights = [1.0, 1e2, 1e4, 800_000.0];
+    let image = Image::from_fn(3, 4, |x, y| [0.001 * illuminated(lights[y])[x]; 3]);
+    let range = |pixels: &[[f32; 3]]| {
+        let values = || pixels.iter().map(|pixel| luminance(*pixel));
+        (values().fold(f32::INFINITY, f32::min), values().fold(0.0, f32::max))
+    };
+    let (dark, bright) = range(&image.rgb_pixels().expect("colour"));
+    assert!((bright / dark / world - 1.0).abs() < 1e-5, "{}", bright / dark);
+    // The local ones come last.
+    for operator in OPERATORS.into_iter().chain(others().into_iter().take(4)) {
+        let shown = mapped(&image, operator, 0.0);
+        let (least, most) = range(&shown);
+        assert!(least >= 0.0 && most <= 1.001 && most > 0.3, "{operator:?}: {least} to {most}");
+        assert!(luminance(shown[11]) >= most - 1e-3, "{operator:?}: {shown:?}");
+    }
+    // 256 levels of a display in eight bits: a step near white is below 1 %.
+    let step = srgb_decode(1.0) / srgb_decode(254.0 / 255.0);
+    assert!((1.0..1.01).contains(&step), "{step}");
+}
