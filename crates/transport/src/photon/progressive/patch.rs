@@ -24,8 +24,9 @@ const THICKNESS: f32 = 0.25;
 const LEAST_ERRORS: f32 = 4.0;
 /// Least cosine between the normals.
 const LEAST_COSINE: f32 = 0.5;
-/// Most trials: where the surface covers less than a thirtieth of the disc, what they find is too dark.
-const MOST_TRIALS: u32 = 32;
+/// Most trials. Where the surface covers a share s of the disc, what they find is too dark by (1 - s)^256: 8 % at a hundredth,
+/// nothing to speak of at a thirtieth.
+const MOST_TRIALS: u32 = 256;
 /// Surfaces that a line meets at most: those that do not count may lie above one that does.
 const MOST_HITS: u32 = 4;
 
