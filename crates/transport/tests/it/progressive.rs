@@ -451,6 +451,31 @@ fn thin_and_small_things_are_as_bright_as_large_ones() {
     }
 }
 
+/// What is too sharp to receive photons is no part of the area that photons are divided by, though it is the same material: metal
+/// whose roughness alternates within the radius.
+#[test]
+fn parts_that_receive_nothing_are_no_area() {
+    let world = format!(
+        "LightSource \"infinite\" {}
+        Texture \"checks\" \"float\" \"checkerboard\" \"float uscale\" 20 \"float vscale\" 20 \"float tex1\" 0.05 \"float tex2\" 0.4
+        Material \"conductor\" \"texture roughness\" \"checks\" \"bool remaproughness\" false {}",
+        lit("L", 1.0),
+        level(0.0, 0.2)
+    );
+    let image = |name, n, parameters: &[(&str, Value)]| {
+        let scene = Setup { size: [32, 32], camera: DOWN, world: &world, ..Setup::default() }.scene(name);
+        mean(&luminance(&render_passes(&by(scene, name, parameters), 0..n)))
+    };
+    let parameters = [
+        ("radius", float(0.05)),
+        ("photonsperiteration", integer(100_000)),
+        ("direct", word("photons")),
+        ("maxdepth", integer(1)),
+    ];
+    // Half of the metal is wide gloss, which would be half as bright.
+    expect_near("checks", image("sppm", 8, &parameters), image("path", 16, &[]), 0.04);
+}
+
 /// A share of the photons that is aimed at a small ball of glass changes noise alone: caustic, shadow and floor stay.
 #[test]
 fn aimed_photons_bring_the_same_light() {

@@ -90,6 +90,11 @@ impl Patch {
         lambda: &Wavelengths,
     ) -> bool {
         let scene = tracer.scene;
+        let materials = &scene.materials;
+        // What receives here receives everywhere on the material.
+        let is_even = !materials.is_mixture(surface.material)
+            && (materials.is_uniform(surface.material)
+                || !materials.may_be_sharp(surface.material, receiver_alpha));
         for _ in 0..MOST_HITS {
             let left = self.thickness + (ray.origin - self.p).dot_normal(self.n);
             let Some(hit) = tracer.intersect_within(&ray, left) else { return false };
@@ -101,7 +106,7 @@ impl Patch {
                     let bsdf = scene.bsdf(&met, &mut lambda);
                     bsdf.is_some_and(|bsdf| !receiving_lobes(&bsdf, receiver_alpha).is_empty())
                 };
-                if met.material == surface.material || receives() {
+                if (met.material == surface.material && is_even) || receives() {
                     return true;
                 }
             }
