@@ -155,6 +155,22 @@ fn precomputed_irradiance_is_that_of_the_map() {
     }
 }
 
+/// PM-6: what makes up a small share of its pixel in a mirror is asked of the map, with the same mean; nothing else changes.
+#[test]
+fn small_shares_ask_the_map() {
+    let film = |share: f32| {
+        let small = entity("photonmap", &[("globalphotons", 60_000), ("causticphotons", 60_000)]);
+        run(&room_scene("shares", small.with("accurateshare", Value::Floats(vec![share])), 24), 16).0
+    };
+    let films = [film(0.0), film(1.0)];
+    for term in ["direct", "caustic", "indirect"] {
+        assert!(layer(&films[0], term) == layer(&films[1], term), "{term}");
+    }
+    let [accurate, approximate] = films.each_ref().map(|film| mean(&layer(film, "specular")));
+    assert!(accurate != approximate);
+    assert!((approximate / accurate - 1.0).abs() < 0.1, "{approximate} instead of {accurate}");
+}
+
 /// A coat is as sharp or as wide as the metal below it for photons and for rays that ask them, though its samples are not: no
 /// light is lost or counted twice.
 #[test]

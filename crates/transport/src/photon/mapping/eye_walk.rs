@@ -66,7 +66,7 @@ pub(crate) struct EyeMethod<'m> {
     pub(crate) seen: Seen,
     /// Rays that gather are followed accurately at surfaces nearer than this, in metres.
     pub(crate) accurate_distance: f32,
-    /// A surface that is seen by scattering is treated approximately where its share of the pixel's light is less.
+    /// A surface that is seen by sharp scattering is treated approximately where its share of the pixel's light is less.
     pub(crate) accurate_share: f32,
     /// Rays that gather from each surface that is seen directly.
     pub(crate) n_gather: u32,
@@ -164,9 +164,12 @@ impl EyeWalk<'_> {
         while let Some((surface, bsdf)) = self.arrive(tracer, path) {
             path.sampler.start_vertex();
             let wide = wide_lobes(&bsdf, self.method.sharp_alpha);
-            let is_near = self.n_wide == 0 || self.distance < self.method.accurate_distance;
-            let is_accurate =
-                self.method.seen == Seen::Accurately && is_near && self.share >= self.method.accurate_share;
+            let is_worth_it = if self.n_wide == 0 {
+                self.share >= self.method.accurate_share
+            } else {
+                self.distance < self.method.accurate_distance
+            };
+            let is_accurate = self.method.seen == Seen::Accurately && is_worth_it;
             let gathers = is_accurate && self.n_wide == 0 && self.method.n_gather > 1 && !wide.is_empty();
             self.walks_per_light_sample = if gathers { self.method.n_gather as f32 } else { 1.0 };
             let admitted = self.admitted_lobes(tracer.scene, &surface, &bsdf);

@@ -39,7 +39,7 @@ pub struct MappingSettings {
     pub caustic_radius: Option<f32>,
     /// Rays that gather are followed accurately at surfaces nearer than this, in metres; `None` for twice the radius of estimates.
     pub accurate_distance: Option<f32>,
-    /// Surfaces whose share of a pixel's light is less than this are treated approximately (SPEC PM-6).
+    /// Surfaces seen by sharp scattering whose share of a pixel's light is less than this are treated approximately (SPEC PM-6).
     pub accurate_share: f32,
     /// Rays that gather from each surface that is seen.
     pub gather_rays: u32,
@@ -157,7 +157,7 @@ const OWN_PARAMETERS: [ParameterSpec; 19] = [
         "float",
         "0",
         "",
-        "surfaces seen by scattering that are less than this share of a pixel ask the global map for all light",
+        "surfaces seen in mirrors and glass that are less than this share of a pixel ask the global map for all light",
     ),
     spec("gatherrays", "integer", "1", "", "rays that gather indirect light, for each camera sample"),
     spec(
