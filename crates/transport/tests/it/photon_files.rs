@@ -112,6 +112,12 @@ fn maps_are_checked_against_the_scene() {
     says(&check(2.0, few("photonmap"), &looked_at), Severity::Error, "to be looked at");
     says(&check(2.0, few("photonmap"), &global[..99]), Severity::Error, "cut short");
     says(&check(2.0, few("photonmap"), b"P6 1 1 255"), Severity::Error, "not a photon map");
+    // The file's places are used as they are, or not at all.
+    let with_step = |step: i32| few("photonmap").with("precompute", Value::Integers(vec![step]));
+    says(&check(2.0, with_step(2), &global), Severity::Warning, "\"precompute\" 4");
+    let without = bytes(&scene(2.0, with_step(0)), Content::All);
+    says(&check(2.0, few("photonmap"), &without), Severity::Warning, "\"precompute\" 0");
+    assert!(check(2.0, with_step(0), &global).list().is_empty());
     // More samples or rays change no map.
     let rays = few("photonmap").with("gatherrays", Value::Integers(vec![3]));
     assert!(check(2.0, rays, &global).list().is_empty());

@@ -223,6 +223,15 @@ pub fn check_map_files(scene: &Scene) -> Diagnostics {
                 let message = format!("\"{name}\" was made {difference}; it is shown as it is");
                 diagnostics.warning(span, message).with_help(remedy());
             }
+            let step = file.traced.place_step;
+            // Where the scene wants none, none is computed.
+            if plan.place_step > 0 && step != plan.place_step {
+                let message = format!(
+                    "\"{name}\" was made with \"precompute\" {step}, here it is {}: that of the file counts",
+                    plan.place_step
+                );
+                diagnostics.warning(span, message).with_help(remedy());
+            }
         }
     }
     diagnostics
