@@ -2,7 +2,7 @@
 
 use etendue_scene::Scene;
 
-use super::settings::MappingSettings;
+use super::settings::{MOST_PHOTONS, MappingSettings};
 use crate::photon::estimate::DensityEstimate;
 use crate::photon::settings::WalkLimits;
 use crate::photon::{EmissionSettings, PhotonWalk, Target, Trail};
@@ -93,7 +93,7 @@ const PLACE_BYTES: f32 = 61.0;
 /// Photons that fit into a share of memory in megabytes, where irradiance of so many maps is computed before at one of `place_step`.
 fn photons_within(megabytes: f32, place_step: u32, n_maps: f32) -> u64 {
     let places = if place_step > 0 { n_maps * PLACE_BYTES / place_step as f32 } else { 0.0 };
-    (megabytes * 1e6 / (PHOTON_BYTES + places)) as u64
+    ((megabytes * 1e6 / (PHOTON_BYTES + places)) as u64).min(u64::from(MOST_PHOTONS))
 }
 
 impl MappingSettings {
@@ -145,5 +145,19 @@ impl MappingSettings {
             sharp_alpha: self.sharp_alpha,
             wavelengths: self.wavelengths,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn photons_of_a_budget() {
+        assert_eq!(photons_within(0.0, 4, 2.0), 0);
+        assert_eq!(photons_within(20.5, 0, 2.0), 1_000_000);
+        // One photon in four has a place in each of two maps.
+        assert_eq!(photons_within(51.0, 4, 2.0), 1_000_000);
+        assert_eq!(photons_within(64_000.0, 0, 1.0), u64::from(MOST_PHOTONS));
     }
 }
