@@ -12,6 +12,7 @@
 use std::fmt;
 
 use etendue_scene::bsdf::{Bsdf, BsdfSample};
+use etendue_scene::parameters::ParameterSpec;
 use etendue_spectrum::Sampled;
 use regex_automata::dfa::{Automaton, StartKind, dense};
 use regex_automata::nfa::thompson;
@@ -22,6 +23,15 @@ use regex_automata::{Anchored, MatchKind};
 /// Glossy events of a microfacet width `alpha` below this count as `S` where an expression has no `G`, unless a scene says
 /// otherwise.
 pub const SHARP_ALPHA: f32 = 0.1;
+
+/// The parameter by which it says so.
+pub(crate) const SHARP_ALPHA_PARAMETER: ParameterSpec = ParameterSpec {
+    name: "sharpalpha",
+    kind: "float",
+    default: "0.1",
+    unit: "",
+    doc: "width of microfacets below which glossy events count as S in path expressions without G, else as D",
+};
 
 /// The most expressions that one render can have.
 pub const MAX_EXPRESSIONS: usize = 32;

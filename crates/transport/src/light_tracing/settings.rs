@@ -2,7 +2,7 @@
 
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
-use crate::lpe::SHARP_ALPHA;
+use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER};
 use crate::path::camera_pass::WavelengthMode;
 use crate::path_tracing::PathSettings;
 
@@ -63,13 +63,7 @@ impl LightSettings {
             unit: "",
             doc: "find what mirrors and clear glass show by paths from the camera, else they show nothing",
         },
-        ParameterSpec {
-            name: "sharpalpha",
-            kind: "float",
-            default: "0.1",
-            unit: "",
-            doc: "width of microfacets below which glossy events count as S in path expressions without G, else as D",
-        },
+        SHARP_ALPHA_PARAMETER,
         WavelengthMode::PARAMETER,
     ];
 

@@ -3,7 +3,7 @@
 use etendue_scene::document::{Entity, Value};
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
-use crate::lpe::SHARP_ALPHA;
+use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER};
 use crate::path::adaptive::AdaptivePixels;
 use crate::path::camera_pass::WavelengthMode;
 
@@ -129,13 +129,7 @@ impl PathSettings {
             unit: "",
             doc: "widen narrow lobes after the first wide one: less noise, biased",
         },
-        ParameterSpec {
-            name: "sharpalpha",
-            kind: "float",
-            default: "0.1",
-            unit: "",
-            doc: "width of microfacets below which glossy events count as S in path expressions without G, else as D",
-        },
+        SHARP_ALPHA_PARAMETER,
         ParameterSpec {
             name: "lights",
             kind: "string",

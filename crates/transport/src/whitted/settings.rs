@@ -2,7 +2,7 @@
 
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
-use crate::lpe::SHARP_ALPHA;
+use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER};
 use crate::path::camera_pass::WavelengthMode;
 
 /// The largest depth: each level may double the rays.
@@ -59,13 +59,7 @@ impl WhittedSettings {
             unit: "",
             doc: "where the shadow ray of a light with an area goes: random (soft shadows) or middle (hard ones)",
         },
-        ParameterSpec {
-            name: "sharpalpha",
-            kind: "float",
-            default: "0.1",
-            unit: "",
-            doc: "width of microfacets below which glossy events count as S in path expressions without G, else as D",
-        },
+        SHARP_ALPHA_PARAMETER,
         ParameterSpec {
             name: "lightsampler",
             kind: "string",

@@ -2,7 +2,7 @@
 
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
-use crate::lpe::SHARP_ALPHA;
+use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER};
 use crate::path::camera_pass::WavelengthMode;
 use crate::photon::{PhotonPattern, PhotonSettings};
 
@@ -144,13 +144,7 @@ impl ProgressiveSettings {
             unit: "",
             doc: "width of microfacets below which camera paths follow glossy reflections; wider ones receive photons",
         },
-        ParameterSpec {
-            name: "sharpalpha",
-            kind: "float",
-            default: "0.1",
-            unit: "",
-            doc: "width of microfacets below which glossy events count as S in path expressions without G, else as D",
-        },
+        SHARP_ALPHA_PARAMETER,
         WavelengthMode::PARAMETER,
         ParameterSpec {
             name: "wavelengthgroups",
