@@ -7,8 +7,8 @@ use etendue_scene::document::{Entity, Value};
 use etendue_scene::{Film, Scene};
 use etendue_transport::lpe::PathExpressions;
 use etendue_transport::{
-    Flow, Integrator, Observer, Outcome, RayCounts, ReportEntry, Stop, Unobserved, method, render,
-    with_own_layers,
+    Flow, INTEGRATORS, Integrator, Observer, Outcome, RayCounts, ReportEntry, Stop, Unobserved, method,
+    render, with_own_layers,
 };
 
 use crate::support::{Setup, flat, layer, lit, luminance, render_layers};
@@ -359,5 +359,33 @@ fn expressions_follow_trails() {
                 assert!((of(a) - of(b)).abs() < 0.02 * image, "{a}: {} and {}", of(a), of(b));
             }
         }
+    }
+}
+
+/// What the tables of the methods with photons say can be said in scene files, by a value of the type that they state; what they
+/// do not say is noticed (PM-12).
+#[test]
+fn parameters_of_the_tables_are_known() {
+    for name in ["photonmap", "photons", "sppm", "ppm", "light"] {
+        let spec = INTEGRATORS.iter().find(|spec| spec.name == name).expect("a method");
+        let problems = |entity: &Entity| method(entity, PathExpressions::default()).1;
+        let mut all = Entity::new(name);
+        for parameter in spec.parameters {
+            let default = parameter.default;
+            let value = match parameter.kind {
+                "integer" => Value::Integers(vec![default.parse().unwrap_or(1)]),
+                "float" => Value::Floats(vec![default.parse().unwrap_or(1.0)]),
+                "bool" => Value::Bools(vec![default != "true"]),
+                "string" => Value::Strings(vec![default.to_owned()]),
+                other => panic!("{name}: {} is of type {other}", parameter.name),
+            };
+            let one = Entity::new(name).with(parameter.name, value.clone());
+            let found = problems(&one);
+            assert!(found.list().is_empty(), "{name}: {}: {:?}", parameter.name, found.list());
+            all = all.with(parameter.name, value);
+        }
+        let found = problems(&all.with("foreign", Value::Integers(vec![1])));
+        assert_eq!(found.list().len(), 1, "{name}: {:?}", found.list());
+        assert!(found.list()[0].message.contains("foreign"), "{name}: {:?}", found.list());
     }
 }
