@@ -576,3 +576,22 @@ fn the_standard_box_is_that_of_the_path_tracer() {
     let blurred = block_images(by(room(), "sppm", &blurred), N_RENDERS, 1);
     assert!(differing_blocks(&blurred, &path).len() > 20, "blur would not show");
 }
+
+/// Where the camera sees nothing that photons could be gathered on, the report says so, and only there.
+#[test]
+fn a_word_where_nothing_is_seen() {
+    let lamp = format!("LightSource \"point\" {} \"point3 from\" [0 0 5] ", lit("I", 1.0));
+    for (world, says) in [(lamp.clone(), true), (lamp + &level(0.0, 0.5), false)] {
+        let scene = Setup { size: [8, 8], camera: DOWN, world: &world, ..Setup::default() }.scene("seen");
+        let scene = by(scene, "sppm", &[]);
+        let mut film = Film::new(scene.film.clone(), Vec::new());
+        let mut integrator = method(&scene.integrator, PathExpressions::default()).0.expect("a method");
+        assert!(integrator.report().iter().all(|entry| entry.advice.is_none()), "nothing was looked at yet");
+        render(&scene, integrator.as_mut(), &mut film, &Stop { passes: 0..1, error: None }, &Unobserved);
+        let is_told = integrator
+            .report()
+            .iter()
+            .any(|entry| entry.advice.as_ref().is_some_and(|advice| advice.contains("nothing in view")));
+        assert_eq!(is_told, says, "{:?}", integrator.report());
+    }
+}

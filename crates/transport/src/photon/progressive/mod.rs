@@ -237,7 +237,8 @@ impl Integrator for Progressive {
 
     fn report(&self) -> Vec<ReportEntry> {
         let tally = &self.tally;
-        let n_points = tally.n_points.load(Ordering::Relaxed).max(1) as f64;
+        let n_found = tally.n_points.load(Ordering::Relaxed);
+        let n_points = n_found.max(1) as f64;
         let mean = |sum: u64| sum as f64 / n_points;
         let empty = mean(tally.n_empty.load(Ordering::Relaxed));
         let photons_per_point = mean(tally.n_photons.load(Ordering::Relaxed));
@@ -248,6 +249,11 @@ impl Integrator for Progressive {
                  there with less noise",
                 empty * 100.0
             ));
+        } else if n_found == 0 && self.prepared.is_some() {
+            without = without.with_advice(
+                "of the pixels that were looked at (one in sixteen) none saw a surface that photons are gathered on: there is nothing \
+                 in view, or it is all mirrors and clear glass, or \"maxdepth\" is too small",
+            );
         }
         vec![
             ReportEntry::new("photons_emitted", self.n_emitted as f64, ""),
