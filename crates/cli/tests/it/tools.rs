@@ -334,3 +334,45 @@ fn exposures_are_combined() {
         folder.run(wrong).expect(2).says(says);
     }
 }
+
+/// A JPEG file with exposure time, f-number and ISO in Exif data behind its first marker.
+fn with_exif(jpeg: &[u8], time: [u32; 2], f_number: [u32; 2], iso: u16) -> Vec<u8> {
+    let [short, long, rational] = [3_u16, 4, 5];
+    let entry = |tag: u16, kind: u16, value: u32| {
+        [&tag.to_le_bytes()[..], &kind.to_le_bytes(), &1_u32.to_le_bytes(), &value.to_le_bytes()].concat()
+    };
+    // A directory that points to that of Exif at 26, of three entries; the fractions are behind it, from 68 on.
+    let mut exif = b"Exif\0\0II*\0\x08\0\0\0\x01\0".to_vec();
+    exif.extend(entry(0x8769, long, 26));
+    exif.extend([0; 4]);
+    exif.extend(3_u16.to_le_bytes());
+    exif.extend(entry(0x829a, rational, 68));
+    exif.extend(entry(0x829d, rational, 76));
+    exif.extend(entry(0x8827, short, iso.into()));
+    exif.extend([0; 4]);
+    exif.extend([time, f_number].concat().iter().flat_map(|number| number.to_le_bytes()));
+    let length = u16::try_from(exif.len() + 2).expect("a short segment").to_be_bytes();
+    [&jpeg[..2], &[0xff, 0xe1], &length, &exif, &jpeg[2..]].concat()
+}
+
+/// Exposures of photographs come from their time, f-number and ISO.
+#[test]
+fn exposures_of_photographs_are_read() {
+    let folder = Folder::new();
+    let jpeg = include_bytes!("../../../../docs/images/gallery/ring.jpg");
+    folder.write("plain.jpg", jpeg);
+    folder.write("short.jpg", with_exif(jpeg, [1, 30], [8, 1], 100));
+    folder.write("long.jpg", with_exif(jpeg, [1, 4], [28, 10], 400));
+    folder.run("hdr plain.jpg long.jpg -o x.exr").expect(2).says("plain.jpg: its Exif data");
+    folder.run("hdr short.jpg long.jpg -o read.exr --response srgb").expect(0);
+    let [short, long] = [1.0 / 30.0 / 64.0, 0.25 * 4.0 / 7.84];
+    folder
+        .run(&format!("hdr plain.jpg plain.jpg -o typed.exr --response srgb --times {short},{long}"))
+        .expect(0);
+    let pixels = |name: &str| folder.image(name).rgb_pixels().expect("colour");
+    let (read, typed) = (pixels("read.exr"), pixels("typed.exr"));
+    assert!(read.iter().flatten().any(|value| *value > 0.0));
+    for (a, b) in read.iter().flatten().zip(typed.iter().flatten()) {
+        assert!((a - b).abs() <= 1e-4 * b.abs(), "{a} read, {b} typed");
+    }
+}
