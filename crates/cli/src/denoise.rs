@@ -29,8 +29,13 @@ fn run_in_pool(arguments: &DenoiseArguments) -> Result<()> {
     outputs::check_distinct(std::iter::once(&arguments.image).chain(&arguments.outputs))?;
     let name = arguments.image.display().to_string();
     let mut image = read_image(&arguments.image).map_err(|error| Failure::Usage(error.to_string()))?;
-    if image.rgb_pixels().is_none() {
+    let Some(pixels) = image.rgb_pixels() else {
         return Err(refusal(&name, DenoiseError::NoColor));
+    };
+    if !arguments.quiet && arguments.fireflies_only {
+        report::non_finite(&name, &pixels, "they stay as they are");
+    } else if !arguments.quiet && arguments.with == DenoiserArgument::Oidn {
+        report::non_finite(&name, &pixels, "they count as black");
     }
     let started = Instant::now();
     let mut done = Vec::new();

@@ -24,6 +24,12 @@ pub(crate) fn run(arguments: &FalsecolorArguments) -> Result<()> {
     let image = read_image(&arguments.image).map_err(|error| Failure::Usage(error.to_string()))?;
     let refuse = |message: &str| Failure::Usage(format!("{}: {message}", arguments.image.display()));
     let mut values = photometric(&image).ok_or_else(|| refuse("there are no channels R, G, B or Y"))?;
+    let pixels: Vec<[f32; 3]> = values.iter().map(|value| [*value; 3]).collect();
+    report::non_finite(
+        &arguments.image.display().to_string(),
+        &pixels,
+        "they are left out of the statistics",
+    );
     let is_lux = image.metadata.get(UNIT).is_some_and(|unit| unit == LUX);
     let default = if is_lux || arguments.reflectance.is_some() {
         QuantityArgument::Illuminance

@@ -32,6 +32,15 @@ pub(crate) fn warning(message: &str) {
     say(&format!("{}: {}\n", style().word(Severity::Warning), printable(message)));
 }
 
+/// Says how many pixels of a picture are not finite, if any, and what becomes of them.
+pub(crate) fn non_finite(name: &str, pixels: &[[f32; 3]], fate: &str) {
+    let n = pixels.iter().filter(|pixel| !pixel.iter().all(|value| value.is_finite())).count();
+    if n > 0 {
+        let are = if n == 1 { "is" } else { "are" };
+        warning(&format!("{name}: {n} of {} pixels {are} not finite; {fate}", pixels.len()));
+    }
+}
+
 /// More messages than this of one severity help nobody.
 const MAX_MESSAGES: usize = 50;
 

@@ -11,7 +11,7 @@ use etendue::spectrum::{ColorSpace, ColorSpaceName, Xyz, white_balance};
 use crate::args::{EncodingArgument, Exposure, TonemapArguments};
 use crate::failure::{Failure, Result};
 use crate::metadata::{self, COLOR_SPACE};
-use crate::{outputs, preview};
+use crate::{outputs, preview, report};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
@@ -22,12 +22,10 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
         return Err(Failure::Usage(format!("{}: inks are written as .exr", path.display())));
     }
     let mut image = read_image(&arguments.image).map_err(|error| Failure::Usage(error.to_string()))?;
-    if image.rgb_pixels().is_none() {
-        return Err(Failure::Usage(format!(
-            "{}: there are no channels R, G, B or Y",
-            arguments.image.display()
-        )));
-    }
+    let name = arguments.image.display().to_string();
+    let Some(pixels) = image.rgb_pixels() else {
+        return Err(Failure::Usage(format!("{name}: there are no channels R, G, B or Y")));
+    };
     let space = match arguments.encoding {
         EncodingArgument::Srgb => ColorSpaceName::Srgb,
         EncodingArgument::P3 => ColorSpaceName::DciP3,
@@ -43,6 +41,7 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
             path.display()
         )));
     }
+    report::non_finite(&name, &pixels, "NaN is shown black, infinity white");
     convert_primaries(&mut image, space);
     if let Some(white) = arguments.white_balance {
         balance_white(&mut image, space, white);

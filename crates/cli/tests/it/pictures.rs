@@ -57,7 +57,17 @@ fn comparison_with_nan() {
     );
     let json = folder.run("compare nan.exr whole.exr --json").expect(0).json();
     assert_eq!((&json["mse"], &json["hdr_flip"], &json["masked"]), (&0.0.into(), &0.0.into(), &2.into()));
-    folder.run("falsecolor nan.exr -o map.png").expect(0);
+    let says = "nan.exr: 2 of 800 pixels are not finite";
+    folder.run("falsecolor nan.exr -o map.png").expect(0).says(says);
+    folder.run("tonemap nan.exr -o shown.png").expect(0).says(says);
+    folder.run("denoise nan.exr -o spread.exr --fireflies-only").expect(0).says(says);
+    image.set_channel("variance.Y", vec![0.01; 800]);
+    write_image(folder.path("noisy.exr"), &image).expect("written");
+    folder.run("denoise noisy.exr -o clean.exr").expect(0).says("noisy.exr: 2 pixels are not finite");
+    for command in ["tonemap whole.exr -o shown.png", "denoise whole.exr -o spread.exr --fireflies-only"] {
+        let run = folder.run(command).expect(0);
+        assert!(!run.stderr.contains("not finite"), "{command}: {}", run.stderr);
+    }
     folder.run("image info nan.exr").expect(0).says("1 values are NaN, 1 are infinite");
 }
 
