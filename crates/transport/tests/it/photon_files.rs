@@ -1,6 +1,7 @@
 //! Photon maps in files: the same picture, bit for bit, and a word where a map was made for something else.
 
 use etendue_math::Rng;
+use etendue_math::statistics::Moments;
 use etendue_scene::document::{Entity, Value};
 use etendue_scene::{Diagnostics, Film, Scene, Severity};
 use etendue_transport::lpe::PathExpressions;
@@ -150,5 +151,31 @@ fn damage_is_noticed() {
             damaged == bytes
                 || matches!(result, Err(PhotonMapError::Damaged | PhotonMapError::Length { .. }))
         );
+    }
+}
+
+/// However few photons are asked for, the flux of their map is that of many, in the mean.
+#[test]
+fn few_photons_have_all_the_flux() {
+    let flux = |n: i32, seed: u32| {
+        let world = format!(
+            "Material \"diffuse\" {} Shape \"bilinearmesh\" \"point3 P\" [-1 -1 2  1 -1 2  -1 1 2  1 1 2]
+            LightSource \"point\" {}",
+            flat("reflectance", 0.5),
+            lit("I", 1.0)
+        );
+        let mut scene = Setup { world: &world, ..Setup::default() }.scene(&format!("flux {n} {seed}"));
+        scene.integrator = Entity::new("photonmap").with("globalphotons", Value::Integers(vec![n]));
+        let file = MapFile::trace(&scene, Content::All).expect("the method has that map");
+        let map = file.map();
+        assert!(map.len() >= n as usize, "{} of {n}", map.len());
+        (0..map.len()).map(|i| f64::from(map.power(&map.photon(i as u32)).y)).sum::<f64>()
+    };
+    let expected = flux(20_000, 0);
+    for n in [1, 5] {
+        let found: Moments = (0..40).map(|seed| flux(n, seed)).collect();
+        let tolerance = 5.0 * found.standard_error() + 0.01 * expected;
+        assert!((found.mean() - expected).abs() < tolerance, "{n}: {} instead of {expected}", found.mean());
+        assert!(tolerance < 0.1 * expected, "{n}: {tolerance} of {expected}");
     }
 }

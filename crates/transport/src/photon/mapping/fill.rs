@@ -2,7 +2,7 @@
 
 use etendue_math::{Normal3, Point3};
 use etendue_scene::Scene;
-use etendue_spectrum::flux_to_xyz;
+use etendue_spectrum::{Xyz, flux_to_xyz};
 
 use super::lit_map::wide_lobes;
 use super::plan::MapPlan;
@@ -28,7 +28,8 @@ pub(super) struct Shot {
     n: Normal3,
 }
 
-/// The least that are emitted: without any by then, there is nothing to be found.
+/// The least that are emitted, all before any are counted: maps of few photons would be too bright if emission stopped with them.
+/// Photons that branch are too many for that.
 const LEAST_EMITTED: u64 = 20_000;
 /// After so many in vain there is nothing to be found, such as caustics where nothing mirrors or refracts.
 const FRUITLESS: u64 = 200_000;
@@ -58,9 +59,10 @@ pub(crate) fn trace_map(
     let most = plan.n_photons.saturating_mul(plan.content.most_emitted()).max(LEAST_EMITTED);
     // Of photons that branch few are enough to tell how many are kept.
     let first = if plan.walk.absorption == Absorption::Branch { 1 << 11 } else { 1 << 20 };
-    let mut next = if emitter.is_dark() { 0 } else { (plan.n_photons / 4).min(first) };
-    while next > 0 || n_emitted == 0 && plan.n_photons > 0 && !emitter.is_dark() {
-        let range = n_emitted..n_emitted + next.max(1);
+    let is_vain = plan.n_photons == 0 || emitter.is_dark();
+    let mut next = if is_vain { 0 } else { (plan.n_photons / 4).max(LEAST_EMITTED).min(first) };
+    while next > 0 {
+        let range = n_emitted..n_emitted + next;
         n_emitted = range.end;
         let keep = |index, vertex: &PhotonVertex<'_>, kept: &mut Vec<Shot>| visit(plan, index, vertex, kept);
         let (more, _) = trace_photons_until(scene, emitter, range, &plan.walk, control, keep);
@@ -71,10 +73,17 @@ pub(crate) fn trace_map(
         next = next_round(plan.n_photons, shots.len() as u64, n_emitted, most);
     }
     if let Some(last) = plan.n_photons.checked_sub(1).and_then(|place| shots.get(place as usize)) {
-        // No more than were wanted, but for the rest of the way of the last.
+        // No more than were wanted, but for the rest of the way of the last. How many were emitted for each is told by all:
+        // emission that stops at a photon that is stored would tell too few, by one of their number.
         let last = last.index;
-        shots.truncate(shots.partition_point(|shot| shot.index <= last));
-        n_emitted = last + 1;
+        let n_kept = shots.partition_point(|shot| shot.index <= last);
+        let emitted = n_emitted as f64 * n_kept as f64 / shots.len() as f64;
+        shots.truncate(n_kept);
+        n_emitted = (emitted.round() as u64).max(1);
+        let scale = (n_emitted as f64 / emitted) as f32;
+        for Shot { photon, .. } in &mut shots {
+            photon.power = Xyz::from(photon.power.to_array().map(|v| v * scale));
+        }
     }
     let n_places = if plan.place_step > 0 { shots.len().div_ceil(plan.place_step) } else { 0 };
     let places = shots.iter().step_by(plan.place_step.max(1)).take(n_places);
