@@ -143,13 +143,22 @@ fn bent_normals() {
         "\"normal N\" [1 2 1  -1 2 1  1 2 -1  -1 2 -1  1 -2 1  -1 -2 1  1 -2 -1  -1 -2 -1] \"point3 P\" [-1 -1 -1",
     );
     check("bent", &world, [0.0, 0.05, 0.06, 0.09], &[&[]]);
+    let indirect = |n: i32| {
+        let mut integrator = photon_map(&[]);
+        integrator.parameters.retain(|parameter| parameter.name != "globalphotons");
+        let integrator = integrator.with("globalphotons", Value::Integers(vec![n]));
+        mean(&layer(&run(&scene(&world, "bent", integrator), 16), "indirect"))
+    };
+    let (few, many) = (indirect(60_000), indirect(600_000));
+    assert!(few > 1.02 * many, "{few} with few photons, {many} with many");
 }
 
-/// What is left of the caustic's mean once noise is known: several maps of independent photons, of two sizes. Blur moves light
-/// over edges and conserves it on a plane; beside the ball itself some of it falls onto the ball.
+/// What is left of the caustic's mean once noise is known, by several maps of independent photons with a small radius. Blur moves
+/// light over edges and conserves it on a plane; beside the ball itself some of it falls onto the ball. Found are 2.3 % with a
+/// standard error of 1.5 %: a bias below 8 % is not seen, and whether it falls with the radius is not tested.
 #[test]
-fn bias_of_caustics_falls_with_the_radius() {
-    if !runs_slow("bias_of_caustics_falls_with_the_radius") {
+fn caustics_with_a_small_radius_have_the_mean_of_paths() {
+    if !runs_slow("caustics_with_a_small_radius_have_the_mean_of_paths") {
         return;
     }
     let world = room("\"conductor\"", "\"dielectric\"", &matte());
@@ -158,18 +167,13 @@ fn bias_of_caustics_falls_with_the_radius() {
     let paths: Moments = (0..8)
         .map(|seed| of(&render_layers(&scene(&world, &format!("p{seed}"), path.clone()), 0..400, &TERMS)))
         .collect();
-    let mut biases = Vec::new();
-    for radius in [0.2, 0.1, 0.05] {
-        let maps: Moments = (0..8)
-            .map(|seed| {
-                let integrator = photon_map(&[("causticradius", radius)]);
-                of(&run(&scene(&world, &format!("m{seed}"), integrator), 16))
-            })
-            .collect();
-        let bias = maps.mean() / paths.mean() - 1.0;
-        let error = maps.standard_error().hypot(paths.standard_error()) / paths.mean();
-        biases.push((bias, error));
-    }
-    let (bias, error) = biases[2];
-    assert!(bias.abs() < 0.005 + 5.0 * error, "{biases:?}");
+    let maps: Moments = (0..8)
+        .map(|seed| {
+            let integrator = photon_map(&[("causticradius", 0.05)]);
+            of(&run(&scene(&world, &format!("m{seed}"), integrator), 16))
+        })
+        .collect();
+    let bias = maps.mean() / paths.mean() - 1.0;
+    let error = maps.standard_error().hypot(paths.standard_error()) / paths.mean();
+    assert!(bias.abs() < 0.005 + 5.0 * error && error < 0.02, "{bias} ± {error}");
 }
