@@ -15,6 +15,10 @@ const SCALE: f64 = (1_u64 << 60) as f64;
 /// Terms beyond this magnitude saturate, so that 2^32 of them cannot overflow the sum.
 const LARGEST_TERM: f64 = 3.0e10;
 
+/// What a square beyond that magnitude adds: so much that the sum tells how many did, up to 40 000 of them, where no more than that
+/// many did not.
+const MARK: f64 = 3.0e15;
+
 impl ExactSum {
     /// The empty sum.
     pub const ZERO: Self = Self(0);
@@ -33,6 +37,23 @@ impl ExactSum {
     #[must_use]
     pub fn saturates(value: f64) -> bool {
         value.abs() > LARGEST_TERM
+    }
+
+    /// The rounded value of one square, which is counted rather than added where it saturates: a square that is cut off would
+    /// make the worst outliers look sure.
+    #[inline]
+    #[must_use]
+    pub fn of_square(value: f64) -> Self {
+        if Self::saturates(value) { Self((MARK * SCALE) as i128) } else { Self::of(value) }
+    }
+
+    /// How many of the squares that were added saturated; at least 1 if any did.
+    #[inline]
+    #[must_use]
+    pub fn n_saturated(self) -> u32 {
+        let n = (self.value() / MARK).round();
+        // Of too many to count, the sum wraps around.
+        if n < 0.0 { 1 } else { n as u32 }
     }
 
     /// The sum, rounded to double precision.
@@ -112,6 +133,22 @@ mod tests {
         assert!(ExactSum::saturates(1e30));
         assert_eq!(ExactSum::of(1e30), ExactSum::of(LARGEST_TERM));
         assert_eq!(ExactSum::of(-1e30).value(), -LARGEST_TERM);
+    }
+
+    /// Squares that are too large are counted, whatever else is in the sum and wherever it has been.
+    #[test]
+    fn huge_squares_are_counted() {
+        let mut sum = ExactSum::ZERO;
+        for i in 0..20_000 {
+            sum += ExactSum::of_square(2.9e10);
+            if i % 1000 == 0 {
+                assert_eq!(sum.n_saturated(), i / 1000);
+                sum += ExactSum::of_square(if i % 2000 == 0 { 1e12 } else { f64::INFINITY });
+            }
+        }
+        let terms = sum.to_terms::<6>();
+        let back = terms.iter().fold(ExactSum::ZERO, |s, t| s + ExactSum::from_term(*t));
+        assert_eq!([sum.n_saturated(), back.n_saturated()], [20; 2]);
     }
 
     /// A checkpoint gives back the very same sum.

@@ -5,6 +5,8 @@
 //! All follows from weighted sums: of squares of colours and features, and of the samples of one half. They stand at the end
 //! of the record of a sample and of the values of a pixel, where they are found by name.
 
+use std::ops::Range;
+
 use super::tile::{COLOR, EXTRA};
 use super::{ExactSum, FilmLayout, N_COLOR};
 
@@ -36,6 +38,21 @@ pub(super) fn names(feature_names: &[&str]) -> impl Iterator<Item = String> {
 pub(super) fn is_in_second_half(pass: u64) -> bool {
     let digit = pass.max(1).ilog2().saturating_sub(1).min(2);
     pass >> digit & 1 == 1
+}
+
+/// Places of the squares among the values of a sample beyond its colour.
+#[inline]
+pub(super) fn squares(layout: &FilmLayout) -> Range<usize> {
+    let start = layout.record_len() - EXTRA - layout.n_guides;
+    start..start + if layout.n_guides > 0 { HALF_FLAG } else { 0 }
+}
+
+/// The variance of a mean over `n` samples of which `n_outliers` have squares too large for a sum. What is known is their number:
+/// if they are equal and outweigh all others, the variance is that of a share k / n, `mean² (n - k) / (k (n - 1))`. One sample of
+/// that kind makes it the square of the mean, and samples that are all of it make it 0.
+pub(super) fn variance_of_outliers(mean: f64, n_outliers: u32, n: f64) -> f64 {
+    let k = f64::from(n_outliers).min(n);
+    mean * mean * (n - k) / (k * (n - 1.0))
 }
 
 /// Completes the record of a sample; the sample's half is that of `guides` already.
@@ -115,6 +132,10 @@ impl GuideChannel {
             Self::Variance { .. } if n < 2.0 => 0.0,
             Self::Variance { value, squared } => {
                 let m = mean(sum(value), weight);
+                let n_saturated = sums[squared].n_saturated();
+                if n_saturated > 0 {
+                    return variance_of_outliers(m, n_saturated, n) as f32;
+                }
                 (mean(sum(squared), weight) - m * m).max(0.0) / (n - 1.0)
             }
             Self::First(HalfPlaces { value, half, half_weight }) => {

@@ -294,7 +294,8 @@ impl FilmSums {
     ///
     /// The mean is a quotient, m = sum of w Y / sum of w, of variance n / (n - 1) sum of w² (Y - m)² / (sum of w)² (Cochran
     /// 1977, "Sampling Techniques", chapter 6). With equal weights that is the usual estimate, without bias; filters with
-    /// negative lobes raise it.
+    /// negative lobes raise it. Where squares are too large for the sums, the number of such samples tells: see
+    /// `variance_of_outliers`.
     #[must_use]
     pub fn develop(&self) -> Image {
         let mut image = Image::new(self.bounds.width() as usize, self.bounds.height() as usize);
@@ -333,6 +334,10 @@ impl FilmSums {
             let values = &self.values[index * stride..(index + 1) * stride];
             let mean: f64 =
                 (0..N_COLOR).map(|c| f64::from(self.luminance[c]) * values[c].value() / weight).sum();
+            let n_saturated = values[MOMENTS][2].n_saturated();
+            if n_saturated > 0 {
+                return guides::variance_of_outliers(mean, n_saturated, n) as f32;
+            }
             let [m0, m1, m2] = std::array::from_fn(|power| values[MOMENTS][power].value());
             let deviations = (m2 - 2.0 * mean * m1 + mean * mean * m0).max(0.0);
             (n / (n - 1.0) * deviations / (weight * weight)) as f32
@@ -391,14 +396,20 @@ impl TileRow<'_> {
             for (record, place) in tile.values.chunks_exact(layout.record_len()).zip(&tile.pixels) {
                 let place = *place as usize;
                 let pixel = place / tile_width * self.width + x + place % tile_width;
-                saturated += self.add_record(pixel, record, luminance);
+                saturated += self.add_record(pixel, record, layout, luminance);
             }
         }
         saturated
     }
 
     #[inline]
-    fn add_record(&mut self, pixel: usize, record: &[f32], luminance_weights: [f32; N_COLOR]) -> u64 {
+    fn add_record(
+        &mut self,
+        pixel: usize,
+        record: &[f32],
+        layout: &FilmLayout,
+        luminance_weights: [f32; N_COLOR],
+    ) -> u64 {
         let weight = f64::from(record[WEIGHT]);
         self.weights[pixel] += ExactSum::of(weight);
         let values = &mut self.values[pixel * self.stride..(pixel + 1) * self.stride];
@@ -412,11 +423,13 @@ impl TileRow<'_> {
         let luminance = luminance(luminance_weights, rgb);
         let mut moment = weight * weight;
         for sum in &mut values[MOMENTS] {
-            *sum += ExactSum::of(moment);
+            *sum += ExactSum::of_square(moment);
             moment *= luminance;
         }
-        for (sum, value) in values[MOMENTS.end..].iter_mut().zip(&record[EXTRA..]) {
-            *sum += ExactSum::of(f64::from(*value) * weight);
+        let squares = guides::squares(layout);
+        for (index, (sum, value)) in values[MOMENTS.end..].iter_mut().zip(&record[EXTRA..]).enumerate() {
+            let term = f64::from(*value) * weight;
+            *sum += if squares.contains(&index) { ExactSum::of_square(term) } else { ExactSum::of(term) };
         }
         saturated
     }

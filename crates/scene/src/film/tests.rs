@@ -498,6 +498,27 @@ fn saturation_is_counted() {
     assert!(values(&film, "G")[0].is_finite());
 }
 
+/// One sample whose square no sum holds makes the worst firefly: its pixel is as unsure as one sample that outweighs all others,
+/// with a standard error of the whole mean. A lamp that every sample sees is sure.
+#[test]
+fn huge_samples_are_unsure() {
+    let n = 64_u64;
+    for (n_huge, expected) in [(1, 1.0), (16, 1.0 / 21.0), (n, 0.0)] {
+        let mut film = Film::new(FilmSettings { guides: true, ..settings(1, 1) }, Vec::new());
+        let lambda = Wavelengths::sample_visible(0.5);
+        for pass in 0..n {
+            let y = if pass < n_huge { 1e6 } else { 1.0 };
+            fill(&mut film, |tile| tile.add([0, 0], &sample(with_luminance(y, &lambda), &lambda)));
+            film.note_pass(pass);
+        }
+        for (mean, variance) in
+            [(values(&film, "G")[0], "variance.G"), (1e6 * n_huge as f64 / n as f64, "variance.Y")]
+        {
+            check_near(values(&film, variance)[0], expected * mean * mean, 1e-3);
+        }
+    }
+}
+
 /// A grey surface is grey under the white of the output, however exposed, in bands as on average over wavelengths.
 #[test]
 fn albedo_is_seen_under_white_light() {
