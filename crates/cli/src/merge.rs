@@ -107,6 +107,8 @@ fn average(parts: Vec<Part>) -> Result<Image> {
     let mut seeds: Vec<String> = Vec::new();
     let mut sum: Vec<Vec<f64>> = Vec::new();
     let first_channels: Vec<String> = visible_channels(&parts[0].image);
+    // Black halves would count as dark pictures.
+    let is_left_out = |name: &str| is_of_half(name) && parts.iter().any(|part| has_empty_half(&part.image));
     for part in &parts {
         if seeds.contains(&part.seed) {
             let message = format!(
@@ -133,7 +135,7 @@ fn average(parts: Vec<Part>) -> Result<Image> {
         }
     }
     let mut image = Image::new(parts[0].image.width, parts[0].image.height);
-    for (name, values) in first_channels.into_iter().zip(sum) {
+    for (name, values) in first_channels.into_iter().zip(sum).filter(|(name, _)| !is_left_out(name)) {
         image.set_channel(&name, values.into_iter().map(|v| v as f32).collect());
     }
     image.metadata = parts[0].image.metadata.clone();
@@ -143,7 +145,46 @@ fn average(parts: Vec<Part>) -> Result<Image> {
     Ok(image)
 }
 
+/// True of channels that hold one half of the samples.
+fn is_of_half(name: &str) -> bool {
+    HALVES.iter().any(|half| name.strip_prefix(half).is_some_and(|rest| rest.starts_with('.')))
+}
+
+const HALVES: [&str; 2] = ["halfA", "halfB"];
+
+/// True if no sample lies in one of the halves, as of few passes that follow each other, but the picture is not black.
+fn has_empty_half(image: &Image) -> bool {
+    let is_black = |layer: &str| {
+        let pixels = image.layer_rgb(layer)?;
+        Some(pixels.iter().flatten().all(|value| *value == 0.0))
+    };
+    is_black("") == Some(false) && HALVES.iter().any(|half| is_black(half) == Some(true))
+}
+
 fn visible_channels(image: &Image) -> Vec<String> {
     let names = image.channels.iter().map(|c| c.name.clone());
     names.filter(|name| !name.starts_with("sums.")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(seed: &str, n_passes: u64, half_b: f32) -> Part {
+        let mut image = Image::rgb(1, 1, vec![[2.0; 3]]);
+        image.set_rgb("halfA", &[[2.0; 3]]);
+        image.set_rgb("halfB", &[[half_b; 3]]);
+        let (name, fingerprint, seed) = ("part".to_owned(), String::new(), seed.to_owned());
+        Part { name, image, fingerprint, seed, sums: None, n_passes }
+    }
+
+    /// Halves are averaged where all have samples, and else left out rather than darkened.
+    #[test]
+    fn empty_halves_are_left_out() {
+        let whole = average(vec![part("1", 1, 2.0), part("2", 3, 6.0)]).expect("an average");
+        assert_eq!(whole.layer_rgb("halfB"), Some(vec![[5.0; 3]]));
+        let without = average(vec![part("1", 1, 0.0), part("2", 3, 6.0)]).expect("an average");
+        assert_eq!(without.rgb_pixels(), Some(vec![[2.0; 3]]));
+        assert!(without.channels.iter().all(|channel| !channel.name.starts_with("half")));
+    }
 }
