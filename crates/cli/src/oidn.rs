@@ -19,6 +19,11 @@ const PROGRAM: &str = "oidnDenoise";
 pub(crate) fn denoise(image: &Image, name: &str, quiet: bool) -> Result<(Image, String)> {
     let folder = Folder::new().map_err(|error| Failure::Running(format!("no temporary folder: {error}")))?;
     let color = image.rgb_pixels().unwrap_or_default();
+    let n_broken = color.iter().filter(|pixel| pixel.iter().any(|v| !v.is_finite())).count();
+    if n_broken > 0 && !quiet {
+        let pixels = if n_broken == 1 { "pixel is" } else { "pixels are" };
+        report::warning(&format!("{name}: {n_broken} {pixels} not finite and black for Open Image Denoise"));
+    }
     let mut command = Command::new(PROGRAM);
     command.arg("--hdr").arg(folder.write("color.pfm", image, color)?);
     let features = image.layer_rgb("Albedo").zip(normals(image));
@@ -77,9 +82,15 @@ struct Folder {
 
 impl Folder {
     fn new() -> io::Result<Self> {
-        let path = std::env::temp_dir().join(format!("etendue-oidn-{}", std::process::id()));
-        std::fs::create_dir(&path)?;
-        Ok(Self { path })
+        // What an ended process of the same number left stays.
+        let mut counter = 0_u32;
+        loop {
+            let path = std::env::temp_dir().join(format!("etendue-oidn-{}-{counter}", std::process::id()));
+            match std::fs::create_dir(&path) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists && counter < 1000 => counter += 1,
+                made => return made.map(|()| Self { path }),
+            }
+        }
     }
 
     /// Writes pixels of the size of `image`; those that are not finite are black.
@@ -96,5 +107,22 @@ impl Drop for Folder {
     fn drop(&mut self) {
         // What cannot be removed is left to the system.
         let _ = std::fs::remove_dir_all(&self.path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A folder that is there already is in nobody's way, and both go.
+    #[test]
+    fn folders_differ() {
+        let paths = {
+            let folders = [(); 2].map(|()| Folder::new().expect("a folder"));
+            assert!(folders.iter().all(|folder| folder.path.is_dir()));
+            folders.each_ref().map(|folder| folder.path.clone())
+        };
+        assert_ne!(paths[0], paths[1]);
+        assert!(paths.iter().all(|path| !path.exists()));
     }
 }
