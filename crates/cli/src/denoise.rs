@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use etendue::image::Image;
 use etendue::image::denoise::{DenoiseError, Denoised, Settings, denoise, spread_fireflies};
-use etendue::io::images::{read_image, write_image};
+use etendue::io::images::{ExrSettings, read_image, write_image};
 
 use crate::args::{DenoiseArguments, DenoiserArgument};
 use crate::failure::{Failure, Result};
@@ -63,12 +63,12 @@ fn run_in_pool(arguments: &DenoiseArguments) -> Result<()> {
 }
 
 /// Denoises what was rendered, and writes it to a file of its own.
-pub(crate) fn after_render(image: &Image, path: &Path, quiet: bool) -> Result<()> {
+pub(crate) fn after_render(image: &Image, path: &Path, exr: ExrSettings, quiet: bool) -> Result<()> {
     let name = path.display().to_string();
     let started = Instant::now();
     let (mut denoised, note) = native(image, &name, quiet)?;
     denoised.metadata.insert(DENOISED.to_owned(), note.clone());
-    outputs::write_all(&[path.to_owned()], |path| write_image(path, &denoised))?;
+    outputs::write_all(&[path.to_owned()], |path| outputs::write_with(path, &denoised, exr))?;
     if !quiet {
         report::note(&format!("{name}: {note} in {:.1} s", started.elapsed().as_secs_f64()));
     }

@@ -101,6 +101,8 @@ fn prepare(arguments: &RenderArguments) -> Result<Job> {
     let fingerprint = fingerprint(&document, &layers);
     let film = Film::new(scene.film.clone(), names);
     let outputs = outputs(arguments, &scene)?;
+    // The film's own name is known only now.
+    outputs::check_distinct(std::iter::once(&arguments.scene).chain(&outputs).chain(others()))?;
     let checkpoint = arguments.checkpoint.clone().map(|path| CheckpointPlan {
         path,
         every: arguments.every,
@@ -191,7 +193,9 @@ fn write_outputs(arguments: &RenderArguments, job: &Job) -> Result<()> {
     }
     outputs::write_precious(&job.outputs, &image, outputs::exr_settings(arguments.exr))?;
     match &arguments.denoise {
-        Some(path) => denoise::after_render(&image, path, arguments.quiet),
+        Some(path) => {
+            denoise::after_render(&image, path, outputs::exr_settings(arguments.exr), arguments.quiet)
+        }
         None => Ok(()),
     }
 }
