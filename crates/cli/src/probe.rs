@@ -45,8 +45,14 @@ pub(crate) fn run(arguments: &ProbeArguments) -> Result<()> {
     if n_invalid > 0 {
         report::warning(&format!("{n_invalid} samples were NaN, infinite or negative; they count as black"));
     }
-    for path in &arguments.outputs {
-        write(path, arguments, &points, &readings)?;
+    // All are tried before failures are reported.
+    let failures: Vec<String> = arguments
+        .outputs
+        .iter()
+        .filter_map(|path| write(path, arguments, &points, &readings).err())
+        .collect();
+    if !failures.is_empty() {
+        return Err(Failure::Running(failures.join("\n")));
     }
     if arguments.json {
         print(&json!({ "points": to_json(&points, &readings) }).to_string());
@@ -130,8 +136,14 @@ fn to_json(points: &[ProbePoint], readings: &[Reading]) -> Value {
     points.iter().zip(readings).map(point).collect()
 }
 
-fn write(path: &Path, arguments: &ProbeArguments, points: &[ProbePoint], readings: &[Reading]) -> Result<()> {
-    let failed = |error: &dyn std::fmt::Display| Failure::Running(format!("cannot write {error}"));
+/// Writes one output, or tells why not.
+fn write(
+    path: &Path,
+    arguments: &ProbeArguments,
+    points: &[ProbePoint],
+    readings: &[Reading],
+) -> std::result::Result<(), String> {
+    let failed = |error: &dyn std::fmt::Display| format!("cannot write {error}");
     if is_table(path) {
         let text = table(points, readings);
         let written = write_atomically(path, |out| std::io::Write::write_all(out, text.as_bytes()));

@@ -21,7 +21,7 @@ pub(crate) struct CompareArguments {
     #[arg(long, value_enum, default_value = "flip")]
     pub(crate) map: MapArgument,
     /// Clamp both images to this largest value first
-    #[arg(long, value_name = "MAX")]
+    #[arg(long, value_name = "MAX", value_parser = parse_largest, allow_negative_numbers = true)]
     pub(crate) clamp: Option<f32>,
     /// Average blocks of the larger image where it is a whole multiple of the smaller
     #[arg(long)]
@@ -67,4 +67,24 @@ fn parse_stops(text: &str) -> Result<f32, String> {
 fn parse_pixels_per_degree(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|number| (1.0..=1000.0).contains(number));
     number.ok_or_else(|| "a number from 1 to 1000 is needed".to_owned())
+}
+
+/// A range from 0 needs an end above it.
+fn parse_largest(text: &str) -> Result<f32, String> {
+    let number = text.parse::<f32>().ok().filter(|number| *number > 0.0);
+    number.ok_or_else(|| "a positive number is needed".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What no range ends at is refused before anything is clamped.
+    #[test]
+    fn largest_values() {
+        assert_eq!(parse_largest("2.5"), Ok(2.5));
+        for bad in ["-1", "0", "NaN", "x"] {
+            assert!(parse_largest(bad).is_err(), "{bad}");
+        }
+    }
 }
