@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &FalsecolorArguments) -> Result<()> {
         &pixels,
         "they are left out of the statistics",
     );
-    let is_lux = image.metadata.get(UNIT).is_some_and(|unit| unit == LUX);
+    let is_lux = is_lux(&image);
     let default = if is_lux || arguments.reflectance.is_some() {
         QuantityArgument::Illuminance
     } else {
@@ -76,14 +76,20 @@ pub(crate) fn run(arguments: &FalsecolorArguments) -> Result<()> {
     Ok(())
 }
 
+/// True of pictures of illuminance.
+pub(crate) fn is_lux(image: &Image) -> bool {
+    image.metadata.get(UNIT).is_some_and(|unit| unit == LUX)
+}
+
 /// Luminance or what else a picture holds, by the weights and the exposure that it states.
 fn photometric(image: &Image) -> Option<Vec<f32>> {
+    let white = metadata::numbers::<f32, 1>(image, metadata::WHITE_LUMINANCE).map_or(1.0, |[white]| white);
+    let is_valid = white > 0.0 && white.is_finite() && !is_lux(image);
+    let white = if is_valid { white } else { 1.0 };
     if let (None, Some(y)) = (image.channel("R"), image.channel("Y")) {
-        return Some(y.values.clone());
+        return Some(y.values.iter().map(|y| y * white).collect());
     }
     let weights = metadata::numbers::<f32, 3>(image, metadata::LUMINANCE).unwrap_or([0.2126, 0.7152, 0.0722]);
-    let white = metadata::numbers::<f32, 1>(image, metadata::WHITE_LUMINANCE).map_or(1.0, |[white]| white);
-    let white = if white > 0.0 && white.is_finite() { white } else { 1.0 };
     let luminance = |p: [f32; 3]| (p[0] * weights[0] + p[1] * weights[1] + p[2] * weights[2]) * white;
     Some(image.rgb_pixels()?.into_iter().map(luminance).collect())
 }
@@ -120,5 +126,20 @@ fn print_statistics(values: &[f32], unit: &str, as_json: bool) {
     print(&format!("min / mean  {uniformity:.6}"));
     if n_masked > 0 {
         print(&format!("masked      {n_masked} of {} pixels are not finite", values.len()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gray pictures have an exposure too; illuminance has none.
+    #[test]
+    fn exposure_of_gray_pictures() {
+        let mut image = Image::gray(2, 1, vec![1.0, 3.0]);
+        image.metadata.insert(metadata::WHITE_LUMINANCE.to_owned(), "50".to_owned());
+        assert_eq!(photometric(&image), Some(vec![50.0, 150.0]));
+        image.metadata.insert(UNIT.to_owned(), LUX.to_owned());
+        assert_eq!(photometric(&image), Some(vec![1.0, 3.0]));
     }
 }

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use crate::args::{ImageArguments, ImageCommand, ImageConvertArguments};
 use crate::failure::{Failure, Result};
+use crate::falsecolor::{self, UNIT};
 use crate::info::print_lines;
 use crate::list::print;
 use crate::{outputs, report};
@@ -123,6 +124,10 @@ fn convert(arguments: &ImageConvertArguments) -> Result<()> {
             let there = if layers.is_empty() { "no layers".to_owned() } else { layers.join(", ") };
             Failure::Usage(format!("{}: no layer {name}; there are {there}", arguments.image.display()))
         })?;
+        // Of the layers of a probe's grid only one is illuminance as the grid is.
+        if name != "direct" && falsecolor::is_lux(&image) {
+            image.metadata.remove(UNIT);
+        }
     }
     let settings = outputs::exr_settings(arguments.exr);
     if arguments.exr.half {

@@ -11,7 +11,7 @@ use etendue::spectrum::{ColorSpace, ColorSpaceName, Xyz, white_balance};
 use crate::args::{EncodingArgument, Exposure, TonemapArguments};
 use crate::failure::{Failure, Result};
 use crate::metadata::{self, COLOR_SPACE};
-use crate::{outputs, preview, report};
+use crate::{falsecolor, outputs, preview, report};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
@@ -105,10 +105,14 @@ fn with_options(arguments: &TonemapArguments) -> Operator {
     operator
 }
 
+/// What a picture tells of light, and no longer holds once it is made for a display.
+const PHOTOMETRIC: [&str; 4] =
+    [metadata::CHROMATICITIES, metadata::LUMINANCE, metadata::WHITE_LUMINANCE, falsecolor::UNIT];
+
 /// Takes a picture to the primaries of a space from those that it states, else from those of sRGB.
 fn convert_primaries(image: &mut Image, to: ColorSpaceName) {
     let stated = image.metadata.remove(COLOR_SPACE);
-    image.metadata.remove(metadata::CHROMATICITIES);
+    image.metadata.retain(|key, _| !PHOTOMETRIC.contains(&key.as_str()));
     let stated = stated.and_then(|name| ColorSpaceName::ALL.into_iter().find(|space| space.name() == name));
     convert_from(image, stated.unwrap_or(ColorSpaceName::Srgb), to);
 }
@@ -153,4 +157,20 @@ fn inks(picture: &Image) -> Image {
         image.set_channel(name, inks.iter().map(|inks| inks[i]).collect());
     }
     image
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A picture for a display tells no candelas, and no weights of primaries that it left.
+    #[test]
+    fn light_is_not_told_of_displays() {
+        let mut image = Image::rgb(1, 1, vec![[0.5; 3]]);
+        for key in PHOTOMETRIC.into_iter().chain([COLOR_SPACE, "software"]) {
+            image.metadata.insert(key.to_owned(), "rec2020".to_owned());
+        }
+        convert_primaries(&mut image, ColorSpaceName::Srgb);
+        assert_eq!(image.metadata.into_keys().collect::<Vec<_>>(), ["software"]);
+    }
 }

@@ -30,6 +30,10 @@ pub use write::{ExrBlocks, ExrNumbers, ExrSettings};
 pub(super) fn read_image(file: &mut Opened) -> Outcome<Image> {
     let exr = read(file)?;
     let window = Window::of_layers(&exr);
+    // Only the data windows were held against limits so far. Small parts of a large picture are no suspicious claim.
+    let n_channels: usize = exr.layer_data.iter().map(|layer| layer.channel_data.list.len()).sum();
+    let bytes_per_pixel = (n_channels * size_of::<f32>()) as u64;
+    check_size(u64::MAX, [window.width as u64, window.height as u64], bytes_per_pixel)?;
     let mut image = Image::new(window.width, window.height);
     image.metadata = read_metadata(&exr, window.is_data_window);
     let n_layers = exr.layer_data.len();

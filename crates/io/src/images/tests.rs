@@ -357,6 +357,24 @@ fn exr_parts() {
     assert_eq!(read_texels(&path).expect("the only channel of the first part").n_channels(), 1);
 }
 
+/// Two small parts in a display window that no memory holds are refused, not placed.
+#[test]
+fn exr_parts_in_a_huge_window() {
+    let folder = Folder::new();
+    let part = |name: &str, x: i32| {
+        let attributes = LayerAttributes::named(name).with_position((x, 0).into());
+        let channel = AnyChannel::new("Z", FlatSamples::F32(vec![5.0]));
+        let channels = AnyChannels::sort([channel].into_iter().collect());
+        Layer::new((1, 1), attributes, exr::prelude::Encoding::FAST_LOSSLESS, channels)
+    };
+    let display = exr::prelude::IntegerBounds::new((0, 0), (1 << 20, 1 << 20));
+    let attributes = exr::prelude::ImageAttributes::new(display);
+    let path = folder.path("huge.exr");
+    let image = exr::prelude::Image::from_layers(attributes, vec![part("a", 0), part("b", 7)]);
+    image.write().to_file(&path).expect("a writable image");
+    fails(read_image(&path), &path, |cause| matches!(cause, Cause::TooLarge { .. }));
+}
+
 /// Primaries other than sRGB's travel with a rendered image.
 #[test]
 fn exr_chromaticities() {
