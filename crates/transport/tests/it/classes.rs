@@ -4,7 +4,7 @@ use etendue_math::statistics::Moments;
 use etendue_scene::Scene;
 use etendue_scene::document::{Entity, Value};
 
-use crate::support::{Setup, expect_near, flat, layer, lit, luminance, render_layers};
+use crate::support::{Setup, expect_near, flat, layer, lit, luminance, mean, render_layers};
 
 /// A closed room with a lamp in the ceiling, a mirror ball, and a glass ball that throws a caustic on the floor.
 fn room(name: &str, integrator: Entity) -> Scene {
@@ -23,10 +23,6 @@ fn room(name: &str, integrator: Entity) -> Scene {
     let mut scene = Setup { size: [32, 32], camera, world: &world, ..Setup::default() }.scene(name);
     scene.integrator = integrator;
     scene
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 fn photons(show: &str) -> Entity {

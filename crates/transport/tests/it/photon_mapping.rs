@@ -11,7 +11,7 @@ use etendue_transport::{
     render, with_own_layers,
 };
 
-use crate::support::{Setup, flat, layer, lit, luminance, render_layers};
+use crate::support::{Setup, flat, layer, lit, luminance, mean, render_layers};
 
 /// A closed room with a lamp in the ceiling, a mirror ball and a glass ball.
 fn room() -> String {
@@ -54,10 +54,6 @@ fn room_scene(name: &str, integrator: Entity, size: u32) -> Scene {
     let mut scene = setup.scene(name);
     scene.integrator = integrator;
     scene
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 const TERMS: [(&str, &str); 4] =

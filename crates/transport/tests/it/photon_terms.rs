@@ -11,7 +11,7 @@ use etendue_scene::{Film, Scene};
 use etendue_transport::lpe::PathExpressions;
 use etendue_transport::{Stop, Unobserved, method, render, with_own_layers};
 
-use crate::support::{Setup, flat, layer, lit, luminance, render_layers, runs_slow};
+use crate::support::{Setup, flat, layer, lit, luminance, mean, render_layers, runs_slow};
 
 const TERMS: [(&str, &str); 4] =
     [("direct", "LD?E"), ("specular", "L(S|D)*SE"), ("caustic", "LS+DE"), ("indirect", "L(S|D)*DS*DE")];
@@ -67,10 +67,6 @@ fn run(scene: &Scene, n_passes: u64) -> Film {
     render(scene, integrator.expect("a method").as_mut(), &mut film, &stop, &Unobserved);
     assert_eq!(film.sums().faults.invalid, 0, "NaN, infinite or negative radiance");
     film
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Holds all terms of a room against paths, for each set of parameters.

@@ -11,7 +11,7 @@ use crate::controls;
 use crate::scenes;
 use crate::support::{
     Setup, block_means, block_moments, channel, expect_equal_pixels, expect_near, expect_same_image, flat,
-    layer, lit, luminance, render_layers, render_passes, runs_slow, seed,
+    layer, lit, luminance, mean, render_layers, render_passes, runs_slow, seed,
 };
 
 /// Looks straight down at a square of 20 cm of the plane z = 0.
@@ -67,10 +67,6 @@ fn through_the_pane(reflectance: f64) -> f64 {
     let r = 0.04;
     let through = 1.0 - 2.0 * r / (1.0 + r);
     reflectance / std::f64::consts::PI * through / 100.0
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// PROG-1, PROG-2: light that comes through glass to a diffuse surface, by both methods and both ways to shrink the radius.

@@ -129,6 +129,11 @@ pub(crate) fn luminance(film: &Film) -> Vec<f64> {
     layer_luminance(film, &film.develop(), "")
 }
 
+/// Mean of these values.
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
 /// Luminance of each pixel of a layer.
 pub(crate) fn layer(film: &Film, name: &str) -> Vec<f64> {
     layer_luminance(film, &film.develop(), &format!("{name}."))

@@ -62,7 +62,8 @@ impl MapEstimate {
         irradiance(&self.density, (p, n), wanted, map, scratch)
     }
 
-    fn find(&self, map: &PhotonMap, p: Point3, scratch: &mut EstimateScratch) -> usize {
+    /// Finds the photons around a place, and tells how many were wanted.
+    pub(crate) fn find(&self, map: &PhotonMap, p: Point3, scratch: &mut EstimateScratch) -> usize {
         let wanted = self.density.search_size(self.k);
         map.nearest(p, wanted, self.max_radius, &mut scratch.found);
         wanted

@@ -554,7 +554,7 @@ fn ask(
     if let (Some(irradiance), BsdfKind::Diffuse(diffuse), true) = (irradiance, bsdf.kind(), is_flat) {
         let (p, ng) = (surface.point.p, surface.point.ng.as_vector());
         let n = if ng.dot(surface.wo) < 0.0 { -ng } else { ng };
-        if let Some(irradiance) = irradiance.irradiance(p, n, map.max_radius) {
+        if let Some(irradiance) = irradiance.irradiance(p, n, map.estimate.max_radius) {
             return irradiance.sample(path.lambda) * diffuse.reflectance * FRAC_1_PI;
         }
     }

@@ -11,7 +11,7 @@ use super::plan::MapPlan;
 use crate::lpe::Event;
 use crate::photon::Trail;
 use crate::photon::estimate::radiance::{LitPlace, radiance};
-use crate::photon::estimate::{Density, DensityEstimate, EstimateScratch, Photons};
+use crate::photon::estimate::{Density, EstimateScratch, MapEstimate, Photons};
 use crate::photon::map::PhotonMap;
 
 /// The lobes of a surface that photons light: all but mirrors and what is nearly as sharp, which rays are for (SPEC LPE-5).
@@ -33,12 +33,8 @@ pub(crate) fn wide_lobes(bsdf: &Bsdf, sharp_alpha: f32) -> Lobes {
 pub(crate) struct LitMap {
     /// The photons.
     pub(crate) map: PhotonMap,
-    /// Photons of each estimate.
-    pub(crate) k: usize,
-    /// The greatest radius of an estimate in metres.
-    pub(crate) max_radius: f32,
-    /// How density is estimated.
-    pub(crate) estimate: DensityEstimate,
+    /// How it is asked.
+    pub(crate) estimate: MapEstimate,
 }
 
 /// Photons whose surroundings tell how dense a map is.
@@ -55,14 +51,7 @@ impl LitMap {
     pub(crate) fn new(scene: &Scene, plan: &MapPlan, map: PhotonMap) -> Self {
         let k = plan.k.max(1);
         let max_radius = plan.max_radius.unwrap_or_else(|| fitting_radius(scene, &map, k));
-        Self { map, k, max_radius, estimate: plan.estimate }
-    }
-
-    /// Finds the photons around a place, for the estimate.
-    fn search(&self, p: Point3, scratch: &mut EstimateScratch) -> usize {
-        let wanted = self.estimate.search_size(self.k);
-        self.map.nearest(p, wanted, self.max_radius, &mut scratch.found);
-        wanted
+        Self { map, estimate: MapEstimate { density: plan.estimate, k, max_radius } }
     }
 
     /// Radiance that some lobes of a surface make of the photons, towards where it is seen from.
@@ -76,9 +65,8 @@ impl LitMap {
         if self.map.is_empty() || lobes.is_empty() {
             return (Sampled::ZERO, Density::default());
         }
-        let wanted = self.search(surface.point.p, scratch);
         let place = LitPlace { p: surface.point.p, wo: surface.wo, bsdf, lobes, lambda };
-        let found = radiance(&self.estimate, &place, wanted, &self.map, scratch);
+        let found = self.estimate.radiance(&self.map, &place, scratch);
         (found.radiance, found.density)
     }
 
@@ -94,7 +82,7 @@ impl LitMap {
         if self.map.is_empty() || lobes.is_empty() {
             return;
         }
-        let wanted = self.search(surface.point.p, scratch);
+        let wanted = self.estimate.find(&self.map, surface.point.p, scratch);
         let mut numbers: Vec<usize> =
             scratch.found.iter().map(|near| self.map.photon(near.index).trail_number()).collect();
         numbers.sort_unstable();
@@ -103,7 +91,7 @@ impl LitMap {
         for number in numbers {
             let Some(trail) = self.map.trails().get(number) else { continue };
             let photons = OfTrail { map: &self.map, number };
-            show(*trail, radiance(&self.estimate, &place, wanted, &photons, scratch).radiance);
+            show(*trail, radiance(&self.estimate.density, &place, wanted, &photons, scratch).radiance);
         }
     }
 }

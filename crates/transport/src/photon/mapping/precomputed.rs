@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::fill::Arrival;
 use super::lit_map::LitMap;
 use crate::integrator::{Control, RayCounts};
-use crate::photon::estimate::{EstimateScratch, irradiance};
+use crate::photon::estimate::EstimateScratch;
 
 /// The least cosine between similar normals.
 const LEAST_COSINE: f32 = 0.9;
@@ -90,9 +90,7 @@ impl Precomputed {
 
 fn place(map: &LitMap, Arrival { p, n }: Arrival, scratch: &mut EstimateScratch) -> (Face, Lifted) {
     let n = n.as_vector();
-    let wanted = map.estimate.search_size(map.k);
-    map.map.nearest(p, wanted, map.max_radius, &mut scratch.found);
-    let (irradiance, density) = irradiance(&map.estimate, (p, n), wanted, &map.map, scratch);
+    let (irradiance, density) = map.estimate.irradiance(&map.map, (p, n), scratch);
     let reach = REACH * density.radius;
     (Face::new(n, reach * reach), Lifted::new(irradiance))
 }

@@ -109,7 +109,7 @@ pub(crate) fn describe_map(names: &MapNames, map: &LitMap, probe: &Probe) -> Vec
         limited = limited.with_advice(format!(
             "{:.0} % of the places that are seen have fewer photons than an estimate wants within {:.3} m: more \"{}\", or a larger \"{}\"",
             100.0 * probe.limited,
-            map.max_radius,
+            map.estimate.max_radius,
             names.photons_parameter,
             names.radius_parameter
         ));
@@ -119,7 +119,7 @@ pub(crate) fn describe_map(names: &MapNames, map: &LitMap, probe: &Probe) -> Vec
         ReportEntry::new(names.stored, map.map.len() as f64, ""),
         length(names.mean_radius, probe.mean_radius),
         length(names.worst_radius, probe.worst_radius),
-        length(names.max_radius, map.max_radius),
+        length(names.max_radius, map.estimate.max_radius),
         limited,
     ]
 }
