@@ -161,29 +161,34 @@ impl EyeWalk<'_> {
         path: &mut CameraPath<'_, '_>,
         scratch: &mut EstimateScratch,
     ) -> Sampled {
+        let method = self.method;
         while let Some((surface, bsdf)) = self.arrive(tracer, path) {
             path.sampler.start_vertex();
-            let wide = wide_lobes(&bsdf, self.method.sharp_alpha);
+            let wide = wide_lobes(&bsdf, method.sharp_alpha);
             let is_worth_it = if self.n_wide == 0 {
-                self.share >= self.method.accurate_share
+                self.share >= method.accurate_share
             } else {
-                self.distance < self.method.accurate_distance
+                self.distance < method.accurate_distance
             };
-            let is_accurate = self.method.seen == Seen::Accurately && is_worth_it;
-            let gathers = is_accurate && self.n_wide == 0 && self.method.n_gather > 1 && !wide.is_empty();
-            self.walks_per_light_sample = if gathers { self.method.n_gather as f32 } else { 1.0 };
+            let is_accurate = method.seen == Seen::Accurately && is_worth_it;
+            let gathers = is_accurate && self.n_wide == 0 && method.n_gather > 1 && !wide.is_empty();
+            self.walks_per_light_sample = if gathers { method.n_gather as f32 } else { 1.0 };
             let admitted = self.admitted_lobes(tracer.scene, &surface, &bsdf);
             let goes_on = if is_accurate {
                 let lit = self.lit_lobes(wide) & admitted;
                 self.add_direct_light(tracer, &surface, &bsdf, (lit, Lobes::ALL), path);
-                self.add_caustic(&surface, &bsdf, wide & admitted, path, scratch);
+                if let Some(map) = method.caustic {
+                    let caustic = (map, method.caustic_irradiance, Term::Caustic);
+                    self.add_from_map(caustic, &surface, (&bsdf, wide & admitted), path, scratch);
+                }
                 if gathers {
                     return self.gather(tracer, &surface, &bsdf, path, scratch);
                 }
                 self.scatter(tracer.scene, &surface, &bsdf, Lobes::ALL, path)
             } else {
                 self.add_direct_light_beside_map(tracer, &surface, &bsdf, wide, path);
-                self.add_global(&surface, &bsdf, wide & admitted, path, scratch);
+                let global = (method.global, method.global_irradiance, Term::Indirect);
+                self.add_from_map(global, &surface, (&bsdf, wide & admitted), path, scratch);
                 self.scatter(tracer.scene, &surface, &bsdf, bsdf.lobes() & !wide, path)
             };
             if !goes_on {
@@ -456,20 +461,21 @@ impl EyeWalk<'_> {
         }
     }
 
-    /// Light that came through sharp scattering alone.
-    fn add_caustic(
+    /// Light that a map has, of some part of the image if the surface is the first.
+    fn add_from_map(
         &mut self,
+        (map, irradiance, first): (&LitMap, Option<&Precomputed>, Term),
         surface: &Surface,
-        bsdf: &Bsdf,
-        wide: Lobes,
+        (bsdf, wide): (&Bsdf, Lobes),
         path: &mut CameraPath<'_, '_>,
         scratch: &mut EstimateScratch,
     ) {
-        let Some(map) = self.method.caustic.filter(|_| !wide.is_empty()) else { return };
-        let irradiance = self.method.caustic_irradiance;
+        if wide.is_empty() {
+            return;
+        }
         let light = ask(map, irradiance, surface, (bsdf, wide), path, scratch) * self.beta;
         self.radiance += light;
-        path.layers.add_own(self.term_through(Event::Diffuse, Term::Caustic) as usize, light);
+        path.layers.add_own(self.term_through(Event::Diffuse, first) as usize, light);
         self.add_to_layers(map, surface, bsdf, wide, path, scratch);
     }
 
@@ -493,26 +499,6 @@ impl EyeWalk<'_> {
             _ => sharp & Lobes::NON_SPECULAR,
         };
         self.add_direct_light(tracer, surface, bsdf, (lit, sharp), path);
-    }
-
-    /// All light that the global map has.
-    fn add_global(
-        &mut self,
-        surface: &Surface,
-        bsdf: &Bsdf,
-        wide: Lobes,
-        path: &mut CameraPath<'_, '_>,
-        scratch: &mut EstimateScratch,
-    ) {
-        if wide.is_empty() {
-            return;
-        }
-        let map = self.method.global;
-        let irradiance = self.method.global_irradiance;
-        let light = ask(map, irradiance, surface, (bsdf, wide), path, scratch) * self.beta;
-        self.radiance += light;
-        path.layers.add_own(self.term_through(Event::Diffuse, Term::Indirect) as usize, light);
-        self.add_to_layers(map, surface, bsdf, wide, path, scratch);
     }
 
     /// Fills the layers of path expressions by what the trails of photons tell.
