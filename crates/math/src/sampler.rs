@@ -75,6 +75,7 @@ pub struct Sampler(Generator);
 
 impl Sampler {
     /// The start of sample `sample_index` of a pixel.
+    #[inline]
     #[must_use]
     pub fn new(settings: &SamplerSettings, pixel: [u32; 2], sample_index: u64) -> Self {
         let seed = hash64(&[settings.seed, u64::from(pixel[0]) << 32 | u64::from(pixel[1])]);

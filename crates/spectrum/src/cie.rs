@@ -20,6 +20,8 @@ pub struct ColorMatching {
     pub y_bar: Vec<f32>,
     /// z̄, blue.
     pub z_bar: Vec<f32>,
+    /// All three side by side, and a 0.
+    pub(crate) rows: Vec<[f32; 4]>,
 }
 
 /// The colour-matching functions of the CIE 1931 2° observer.
@@ -30,7 +32,12 @@ pub fn color_matching() -> &'static ColorMatching {
         let rows = parse_columns(include_str!("../data/cie1931.csv"));
         assert_eq!(rows.len(), N_DENSE, "the table has one row per rendered nanometre");
         let column = |c: usize| rows.iter().map(|row| row[c]).collect();
-        ColorMatching { x_bar: column(1), y_bar: column(2), z_bar: column(3) }
+        ColorMatching {
+            x_bar: column(1),
+            y_bar: column(2),
+            z_bar: column(3),
+            rows: rows.iter().map(|row| [row[1], row[2], row[3], 0.0]).collect(),
+        }
     })
 }
 

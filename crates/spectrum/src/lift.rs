@@ -12,9 +12,9 @@
 
 use std::sync::OnceLock;
 
-use crate::cie::{CIE_Y_INTEGRAL, integrate_1nm, x_bar, y_bar, z_bar};
+use crate::cie::{CIE_Y_INTEGRAL, color_matching, integrate_1nm};
 use crate::matrix::{Matrix3, solve, transpose};
-use crate::tables::dense_lookup;
+use crate::tables::{dense_lookup, weighted_rows};
 use crate::{
     Bands, ColorSpace, ColorSpaceName, N_LAMBDA, Sampled, SigmoidPolynomial, Wavelengths, Xyz, uplift_srgb,
 };
@@ -32,19 +32,15 @@ const INSIDE: f32 = 0.02;
 
 /// The XYZ of what has these values at the wavelengths of a path (or in its bands), in the mean over paths: by
 /// [`crate::spectrum_to_xyz`].
+#[inline]
 #[must_use]
 pub fn flux_to_xyz(flux: Sampled, wavelengths: &Wavelengths) -> Xyz {
     if let Some(rgb) = wavelengths.estimate_bands(flux) {
         return ColorSpace::get(ColorSpaceName::Srgb).to_xyz(rgb);
     }
-    let weights = flux.safe_div(wavelengths.pdf() * (N_LAMBDA as f32 * CIE_Y_INTEGRAL)).to_array();
-    let mut sum = Xyz::default();
-    for (weight, nm) in weights.into_iter().zip(wavelengths.lambda_nm()) {
-        sum.x += weight * x_bar(nm);
-        sum.y += weight * y_bar(nm);
-        sum.z += weight * z_bar(nm);
-    }
-    sum
+    let weights = flux.safe_div(wavelengths.pdf() * (N_LAMBDA as f32 * CIE_Y_INTEGRAL));
+    let [x, y, z, _] = weighted_rows(&color_matching().rows, weights, wavelengths);
+    Xyz { x, y, z }
 }
 
 /// Values at the wavelengths of a path of a light with this XYZ, not negative. What of it is negative or not finite counts as 0.

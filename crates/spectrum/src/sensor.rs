@@ -6,11 +6,9 @@
 //! value of 1. For the same reason the bands of a path ([`crate::Bands`]) are multiplied by ∫ ȳ dλ: they are linear sRGB of
 //! light divided by it. White balance maps the white of daylight of a temperature to the white of the output space.
 
-use etendue_math::Lanes4;
-
 use crate::cie::{CIE_Y_INTEGRAL, color_matching};
 use crate::matrix::{Matrix3, multiply, transform};
-use crate::tables::dense_place;
+use crate::tables::weighted_rows;
 use crate::xyz::white_balance_f64;
 use crate::{
     ColorSpace, ColorSpaceName, LAMBDA_MIN_NM, N_DENSE, N_LAMBDA, Sampled, SpectrumTables, Wavelengths, Xyz,
@@ -121,14 +119,7 @@ impl Sensor {
         if let Some(rgb) = wavelengths.estimate_bands(l) {
             return std::array::from_fn(|c| (0..3).map(|band| rgb[band] * self.band_response[band][c]).sum());
         }
-        let weight = l.safe_div(wavelengths.pdf() * N_LAMBDA as f32).to_array();
-        let mut sum = Lanes4::splat(0.0);
-        for (w, nm) in weight.into_iter().zip(wavelengths.lambda_nm()) {
-            let (i, f) = dense_place(nm);
-            let [a, b] = [self.response[i], self.response[i + 1]].map(Lanes4);
-            sum = sum + a * Lanes4::splat(w * (1.0 - f)) + b * Lanes4::splat(w * f);
-        }
-        sum.0
+        weighted_rows(&self.response, l.safe_div(wavelengths.pdf() * N_LAMBDA as f32), wavelengths)
     }
 }
 

@@ -1,5 +1,7 @@
 //! Tabulated spectra, one value per nanometre.
 
+use etendue_math::Lanes4;
+
 use crate::{
     ColorSpaceName, LAMBDA_MAX_NM, LAMBDA_MIN_NM, N_DENSE, Sampled, Spectrum, Wavelengths, named_spectrum,
 };
@@ -147,6 +149,18 @@ pub(crate) fn dense_place(nm: f32) -> (usize, f32) {
 pub(crate) fn dense_lookup(table: &[f32], nm: f32) -> f32 {
     let (i, f) = dense_place(nm);
     table[i] * (1.0 - f) + table[i + 1] * f
+}
+
+/// Sum of the rows of a dense table at wavelengths in nm inside the rendered range, each times a weight.
+#[inline]
+pub(crate) fn weighted_rows(rows: &[[f32; 4]], weights: Sampled, wavelengths: &Wavelengths) -> [f32; 4] {
+    let mut sum = Lanes4::splat(0.0);
+    for (w, nm) in weights.to_array().into_iter().zip(wavelengths.lambda_nm()) {
+        let (i, f) = dense_place(nm);
+        let [a, b] = [rows[i], rows[i + 1]].map(Lanes4);
+        sum = sum + a * Lanes4::splat(w * (1.0 - f)) + b * Lanes4::splat(w * f);
+    }
+    sum.0
 }
 
 /// The function through the samples, linear between and 0 outside. At a jump (two samples at one wavelength) the later.

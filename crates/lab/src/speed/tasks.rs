@@ -2,15 +2,18 @@
 
 use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use etendue_geometry::Geometry;
 use etendue_geometry::points::{Neighbours, PointTree};
 use etendue_math::{Point3, Rng, Sampler, SamplerSettings, Vector3};
 use etendue_scene::Film;
-use etendue_spectrum::flux_to_xyz;
 use etendue_transport::photon::estimate::{DensityEstimate, EstimateScratch, MapEstimate};
-use etendue_transport::photon::{Onward, PhotonEmitter, PhotonMap, PhotonWalk, StoredPhoton, trace_photons};
-use etendue_transport::{Stop, Unobserved, render};
+use etendue_transport::photon::{
+    Onward, PhotonEmitter, PhotonMap, PhotonPattern, PhotonVertex, PhotonWalk, StoredPhoton,
+    trace_photon_parts,
+};
+use etendue_transport::{Flow, Integrator, Observer, RayCounts, Stop, render};
 use rayon::prelude::*;
 
 use super::model::Model;
@@ -78,7 +81,7 @@ pub fn tasks(size: &TaskSize) -> (Vec<Task>, bool) {
     tasks.push(Task::new("triangles built", "triangles_built", move || {
         std::hint::black_box(terrain.clone().into_builder().build()).counts().n_triangles as u64
     }));
-    tasks.push(path_task(size.picture));
+    tasks.extend(path_tasks(size.picture));
     tasks.push(look_up_task(size.points));
     tasks.extend(photon_tasks(size.points / 10));
     tasks.push(Task::new("random numbers", "random_numbers", random_numbers));
@@ -106,16 +109,41 @@ fn ray_tasks(model: &Model, geometry: &Arc<Geometry>, resolution: [u32; 2]) -> V
     tasks.collect()
 }
 
-/// One sample for each pixel of the Cornell box, of at most 8 scattering events, with independent random numbers.
-fn path_task(width: u32) -> Task {
-    let scene = StudyScene::cornell_box().with_resolution([width, width]).build();
-    Task::new("paths", "paths", move || {
+/// One sample for each pixel of the Cornell box, of at most 8 scattering events, with independent random numbers: paths, and all
+/// their rays.
+fn path_tasks(width: u32) -> [Task; 2] {
+    let scene = Arc::new(StudyScene::cornell_box().with_resolution([width, width]).build());
+    let trace = move || {
         let mut integrator = Estimator::of_sampler(SamplerChoice::Independent).integrator(&scene);
         let mut film = Film::new(scene.film.clone(), Vec::new());
         let stop = Stop { passes: 0..1, error: None };
-        render(&scene, integrator.as_mut(), &mut film, &stop, &Unobserved);
-        u64::from(width) * u64::from(width)
-    })
+        let rays = RaySum::default();
+        render(&scene, integrator.as_mut(), &mut film, &stop, &rays);
+        rays.0.into_inner()
+    };
+    let rays = trace.clone();
+    [
+        Task::new("paths", "paths", move || {
+            trace();
+            u64::from(width) * u64::from(width)
+        }),
+        Task::new("rays of paths", "path_rays", rays),
+    ]
+}
+
+/// Sums rays, those to lamps too.
+#[derive(Debug, Default)]
+struct RaySum(AtomicU64);
+
+impl Observer for RaySum {
+    fn tile_done(&self, _: u64, rays: RayCounts) -> Flow {
+        self.0.fetch_add(rays.closest + rays.shadow, Ordering::Relaxed);
+        Flow::Continue
+    }
+
+    fn pass_done(&self, _: u64, _: &Film, _: &dyn Integrator) -> Flow {
+        Flow::Continue
+    }
 }
 
 /// Neighbours of a look-up.
@@ -155,31 +183,21 @@ fn look_up_task(n_points: u32) -> Task {
     })
 }
 
-/// Photons of the Cornell box: their ways from surface to surface, the map of those that arrive, its nearest 50, and estimates
-/// of irradiance by 50 and by 200.
-fn photon_tasks(n_photons: u32) -> [Task; 5] {
+/// Photons of the Cornell box: their ways from surface to surface with independent random numbers, their rays, the map of those
+/// that arrive, its nearest 50, and estimates of irradiance by 50 and by 200.
+fn photon_tasks(n_photons: u32) -> [Task; 6] {
     let scene = Arc::new(StudyScene::cornell_box().build());
-    let emitter = PhotonEmitter::new(&scene);
+    let emitter = Arc::new(PhotonEmitter::new(&scene));
+    let walk = PhotonWalk { pattern: PhotonPattern::Random, ..PhotonWalk::default() };
     let trace = move || {
-        let (photons, _) = trace_photons(
-            &scene,
-            &emitter,
-            0..n_photons.into(),
-            &PhotonWalk::default(),
-            |_, vertex, kept| {
-                kept.push(StoredPhoton {
-                    position: vertex.surface.point.p,
-                    power: flux_to_xyz(vertex.flux, vertex.lambda),
-                    wi: vertex.surface.wo,
-                    trail: vertex.trail,
-                    is_shadow: false,
-                });
-                Onward::Continue
-            },
-        );
-        photons
+        let keep = |_, vertex: &PhotonVertex<'_>, kept: &mut Vec<StoredPhoton>| {
+            kept.push(StoredPhoton::of(vertex));
+            Onward::Continue
+        };
+        trace_photon_parts(&scene, &emitter, 0..n_photons.into(), &walk, keep)
     };
-    let photons = trace();
+    let trace_rays = trace.clone();
+    let photons = trace().0.concat();
     let map = Arc::new(PhotonMap::from_photons(&photons, n_photons.into()));
     // What scatters to where photons come from faces them, so that their direction serves as a normal.
     let lit: Arc<[_]> = photons.iter().step_by(32).map(|photon| (photon.position, photon.wi)).collect();
@@ -206,6 +224,7 @@ fn photon_tasks(n_photons: u32) -> [Task; 5] {
             std::hint::black_box(trace());
             n_photons.into()
         }),
+        Task::new("rays of photons", "photon_rays", move || std::hint::black_box(trace_rays()).1.closest),
         Task::new("photons put into a map", "photons_mapped", move || {
             std::hint::black_box(PhotonMap::from_photons(&photons, n_photons.into())).len() as u64
         }),

@@ -47,6 +47,7 @@ impl WavelengthMode {
         &[("hero", Self::Hero), ("single", Self::Single), ("bands", Self::Bands)];
 
     /// Wavelengths for a random number in [0, 1).
+    #[inline]
     #[must_use]
     pub fn sample(self, u: f32) -> Wavelengths {
         match self {

@@ -23,4 +23,4 @@ pub use pattern::PhotonPattern;
 pub use settings::PhotonSettings;
 pub use switches::Switches;
 pub use trail::Trail;
-pub use walk::{Absorption, Onward, PhotonVertex, PhotonWalk, trace_photons};
+pub use walk::{Absorption, Onward, PhotonVertex, PhotonWalk, trace_photon_parts, trace_photons};

@@ -255,8 +255,10 @@ impl PhotonWalk {
         let Some(sample) = sample else { return false };
         let mut left = flight.flux * sample.weight;
         if self.absorption == Absorption::Roulette {
-            // Of photons that are alike so many live on that those are: by what is left over all wavelengths.
-            let share = brightness(left, lambda) / brightness(flight.flux, lambda);
+            // Of photons that are alike so many live on that those are: by what is left over all wavelengths, each over its
+            // density, which is 0 for those that dispersion gave up.
+            let weights = Sampled::splat(1.0).safe_div(lambda.pdf());
+            let share = (left * weights).sum() / (flight.flux * weights).sum();
             let survival = survival_probability(share, 1.0);
             if roulette >= survival {
                 return false;
@@ -300,12 +302,6 @@ impl PhotonWalk {
             }
         }
     }
-}
-
-/// What roulette compares: flux over the density of its wavelengths, which is 0 for those that dispersion gave up.
-#[inline]
-fn brightness(flux: Sampled, lambda: &Wavelengths) -> f32 {
-    flux.safe_div(lambda.pdf()).sum()
 }
 
 /// A photon on its way.
@@ -373,6 +369,20 @@ pub fn trace_photons<T: Send>(
     walk: &PhotonWalk,
     gather: impl Fn(u64, &PhotonVertex<'_>, &mut Vec<T>) -> Onward + Sync,
 ) -> (Vec<T>, RayCounts) {
+    let (parts, rays) = trace_photon_parts(scene, emitter, range, walk, gather);
+    let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
+    all.extend(parts.into_iter().flatten());
+    (all, rays)
+}
+
+/// The same in parts one after another, for those who have no need of all in one place: many are not copied.
+pub fn trace_photon_parts<T: Send>(
+    scene: &Scene,
+    emitter: &PhotonEmitter,
+    range: Range<u64>,
+    walk: &PhotonWalk,
+    gather: impl Fn(u64, &PhotonVertex<'_>, &mut Vec<T>) -> Onward + Sync,
+) -> (Vec<Vec<T>>, RayCounts) {
     trace_photons_until(scene, emitter, range, walk, &Control::new(&Unobserved), gather)
 }
 
@@ -384,28 +394,24 @@ pub(crate) fn trace_photons_until<T: Send>(
     walk: &PhotonWalk,
     control: &Control<'_>,
     gather: impl Fn(u64, &PhotonVertex<'_>, &mut Vec<T>) -> Onward + Sync,
-) -> (Vec<T>, RayCounts) {
+) -> (Vec<Vec<T>>, RayCounts) {
     let n_tasks = range.end.saturating_sub(range.start).div_ceil(PHOTONS_PER_TASK);
-    let parts: Vec<(Vec<T>, RayCounts)> = (0..n_tasks)
-        .into_par_iter()
-        .map(|task| {
-            let (tracer, mut gathered) = (Tracer::new(scene), Vec::new());
-            if control.is_cancelled() {
-                return (gathered, tracer.counts());
-            }
-            let start = range.start + task * PHOTONS_PER_TASK;
-            for index in start..range.end.min(start + PHOTONS_PER_TASK) {
-                walk.trace(&tracer, emitter, index, &mut |vertex| gather(index, vertex, &mut gathered));
-            }
-            control.tile_done(0, tracer.counts());
-            (gathered, tracer.counts())
-        })
-        .collect();
-    let mut all = Vec::with_capacity(parts.iter().map(|(part, _)| part.len()).sum());
-    let mut rays = RayCounts::default();
-    for (part, counts) in parts {
-        all.extend(part);
-        rays += counts;
-    }
-    (all, rays)
+    let trace = |task| {
+        let (tracer, mut gathered) = (Tracer::new(scene), Vec::new());
+        if control.is_cancelled() {
+            return (gathered, tracer.counts());
+        }
+        let start = range.start + task * PHOTONS_PER_TASK;
+        for index in start..range.end.min(start + PHOTONS_PER_TASK) {
+            walk.trace(&tracer, emitter, index, &mut |vertex| gather(index, vertex, &mut gathered));
+        }
+        control.tile_done(0, tracer.counts());
+        (gathered, tracer.counts())
+    };
+    let (parts, rays): (Vec<_>, Vec<_>) = (0..n_tasks).into_par_iter().map(trace).unzip();
+    let total = rays.into_iter().fold(RayCounts::default(), |mut total, rays| {
+        total += rays;
+        total
+    });
+    (parts, total)
 }

@@ -147,6 +147,7 @@ impl AreaEmission {
     }
 
     /// A direction around +z in proportion to radiance times cosine.
+    #[inline]
     fn sample_direction(&self, context: &LightContext, u: Point2) -> Vector3 {
         match &self.falloff {
             Falloff::Even => warp::sample_cosine_hemisphere(u),
@@ -156,6 +157,7 @@ impl AreaEmission {
     }
 
     /// Density per steradian of [`sample_direction`](Self::sample_direction).
+    #[inline]
     fn direction_pdf(&self, context: &LightContext, cosine: f32) -> f32 {
         match &self.falloff {
             Falloff::Even => warp::cosine_hemisphere_pdf(cosine),
@@ -248,6 +250,7 @@ impl AreaEmission {
     }
 
     /// A ray that leaves a point of the surface, in proportion to radiance times cosine.
+    #[inline]
     pub(super) fn leaving(
         &self,
         context: &LightContext,

@@ -49,8 +49,8 @@ pub struct PhotonMap {
 impl PhotonMap {
     /// A map of photons whose powers are divided by the number emitted.
     #[must_use]
-    pub fn from_photons(photons: &[StoredPhoton], n_emitted: u64) -> Self {
-        let mut builder = PhotonMapBuilder::new(photons.len());
+    pub fn from_photons<'a>(photons: impl IntoIterator<Item = &'a StoredPhoton>, n_emitted: u64) -> Self {
+        let mut builder = PhotonMapBuilder::new(usize::MAX);
         for photon in photons {
             builder.store(photon);
         }

@@ -27,6 +27,7 @@ impl PhotonMap {
 
 impl StoredPhoton {
     /// The photon that arrives at a vertex.
+    #[inline]
     #[must_use]
     pub fn of(vertex: &PhotonVertex<'_>) -> Self {
         Self {

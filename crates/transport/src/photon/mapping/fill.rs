@@ -2,12 +2,11 @@
 
 use etendue_math::{Normal3, Point3};
 use etendue_scene::Scene;
-use etendue_spectrum::{Xyz, flux_to_xyz};
 
 use super::lit_map::wide_lobes;
 use super::plan::MapPlan;
 use crate::integrator::Control;
-use crate::photon::map::{PhotonMap, StoredPhoton};
+use crate::photon::map::{PhotonMap, PhotonMapBuilder, StoredPhoton};
 use crate::photon::walk::trace_photons_until;
 use crate::photon::{Absorption, Onward, PhotonEmitter, PhotonVertex};
 
@@ -54,7 +53,8 @@ pub(crate) fn trace_map(
     plan: &MapPlan,
     control: &Control<'_>,
 ) -> Option<Traced> {
-    let mut shots: Vec<Shot> = Vec::new();
+    let mut parts: Vec<Vec<Shot>> = Vec::new();
+    let mut n_stored = 0;
     let mut n_emitted = 0;
     let most = plan.n_photons.saturating_mul(plan.content.most_emitted()).max(LEAST_EMITTED);
     // Of photons that branch few are enough to tell how many are kept.
@@ -69,31 +69,46 @@ pub(crate) fn trace_map(
         if control.is_cancelled() {
             return None;
         }
-        shots.extend(more);
-        next = next_round(plan.n_photons, shots.len() as u64, n_emitted, most);
+        n_stored += more.iter().map(Vec::len).sum::<usize>();
+        parts.extend(more);
+        next = next_round(plan.n_photons, n_stored as u64, n_emitted, most);
     }
-    if let Some(last) = plan.n_photons.checked_sub(1).and_then(|place| shots.get(place as usize)) {
+    // Of which those that are kept are a share.
+    let mut emitted = n_emitted.max(1) as f64;
+    if let Some(last) = plan.n_photons.checked_sub(1).and_then(|place| nth(&parts, place as usize)) {
         // No more than were wanted, but for the rest of the way of the last. How many were emitted for each is told by all:
         // emission that stops at a photon that is stored would tell too few, by one of their number.
         let last = last.index;
-        let n_kept = shots.partition_point(|shot| shot.index <= last);
-        let emitted = n_emitted as f64 * n_kept as f64 / shots.len() as f64;
-        shots.truncate(n_kept);
+        for part in &mut parts {
+            part.truncate(part.partition_point(|shot| shot.index <= last));
+        }
+        let n_kept = parts.iter().map(Vec::len).sum::<usize>();
+        emitted *= n_kept as f64 / n_stored as f64;
         n_emitted = (emitted.round() as u64).max(1);
-        let scale = (n_emitted as f64 / emitted) as f32;
-        for Shot { photon, .. } in &mut shots {
-            photon.power = Xyz::from(photon.power.to_array().map(|v| v * scale));
+    }
+    let n_places = if plan.place_step > 0 { usize::MAX } else { 0 };
+    let places = parts.iter().flatten().step_by(plan.place_step.max(1)).take(n_places);
+    let arrivals = places.map(|shot| Arrival { p: shot.photon.position, n: shot.n }).collect();
+    let mut builder = PhotonMapBuilder::new(usize::MAX);
+    // There may be many millions: those that are stored go as others come.
+    for part in parts {
+        for shot in &part {
+            builder.store(&shot.photon);
         }
     }
-    let n_places = if plan.place_step > 0 { shots.len().div_ceil(plan.place_step) } else { 0 };
-    let places = shots.iter().step_by(plan.place_step.max(1)).take(n_places);
-    let arrivals = places.map(|shot| Arrival { p: shot.photon.position, n: shot.n }).collect();
-    let photons: Vec<StoredPhoton> = shots.iter().map(|shot| shot.photon).collect();
-    // There may be many millions: what is not needed any more goes before the map comes.
-    drop(shots);
-    let map = PhotonMap::from_photons(&photons, n_emitted);
-    drop(photons);
-    Some(Traced { map, arrivals, place_step: plan.place_step })
+    builder.scale_power((1.0 / emitted) as f32);
+    Some(Traced { map: builder.balance(n_emitted), arrivals, place_step: plan.place_step })
+}
+
+/// The shot of that number.
+fn nth(parts: &[Vec<Shot>], mut place: usize) -> Option<&Shot> {
+    for part in parts {
+        if let Some(shot) = part.get(place) {
+            return Some(shot);
+        }
+        place -= part.len();
+    }
+    None
 }
 
 /// Keeps a photon that belongs into the map.
@@ -101,13 +116,7 @@ pub(super) fn visit(plan: &MapPlan, index: u64, vertex: &PhotonVertex<'_>, kept:
     let wide = wide_lobes(vertex.bsdf, plan.walk.sharp_alpha);
     if wide.intersects(vertex.lobes) && plan.content.holds(vertex.trail) {
         let ng = vertex.surface.point.ng;
-        let photon = StoredPhoton {
-            position: vertex.surface.point.p,
-            power: flux_to_xyz(vertex.flux, vertex.lambda),
-            wi: vertex.surface.wo,
-            trail: vertex.trail,
-            is_shadow: false,
-        };
+        let photon = StoredPhoton::of(vertex);
         kept.push(Shot { index, photon, n: if ng.dot_vector(photon.wi) < 0.0 { -ng } else { ng } });
     }
     let is_sharp = wide != vertex.bsdf.lobes();

@@ -272,7 +272,8 @@ fn hashes(scene: &Scene, emitter: &PhotonEmitter, plan: &MapPlan) -> (u64, u64) 
     let keep = |index, vertex: &PhotonVertex<'_>, kept: &mut Vec<Shot>| visit(plan, index, vertex, kept);
     let control = Control::new(&Unobserved);
     let (shots, _) = trace_photons_until(scene, emitter, 0..FIRST_PHOTONS, walk, &control, keep);
-    let photons = shots.iter().fold(shots.len() as u64, |hash, Shot { photon, .. }| {
+    let n_shots = shots.iter().map(Vec::len).sum::<usize>() as u64;
+    let photons = shots.iter().flatten().fold(n_shots, |hash, Shot { photon, .. }| {
         let (p, power) = (photon.position, photon.power);
         let [a, b, c, d, e, f] = [p.x, p.y, p.z, power.x, power.y, power.z].map(|v| u64::from(v.to_bits()));
         hash64(&[hash, a | b << 32, c | d << 32, e | f << 32, photon.trail.bits()])

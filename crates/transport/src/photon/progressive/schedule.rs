@@ -23,10 +23,12 @@ const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 ///
 /// The four wavelengths of a group are equally far apart, so that their place within a quarter tells all of them; which of them is
 /// the hero matters to dispersion alone. Places go by the radical inverse in base 2: four groups in a row, from a multiple of
-/// four on, have 16 wavelengths equally far apart, and have each of the four heroes; 2^n groups have 4 * 2^n.
+/// four on, have 16 wavelengths equally far apart, and have each of the four heroes; 2^n groups have 4 * 2^n. The quarter of the
+/// hero is the sum without carry of the group's digits in base 4. Any two neighbours among the binary digits tell it, given the
+/// others, so that of the heroes of 2^n groups one lies in each of 2^n equal parts: behind a prism there is nothing else.
 pub(super) fn group(seed: u64, number: u64) -> Common {
     let unit = |bits: u64, axis: u64| unit_f32((bits.wrapping_add(hash64(&[seed, axis])) >> 32) as u32);
-    let hero = (number / 4 + number) % 4;
+    let hero = (0..32).fold(0, |sum, digit| sum ^ (number >> (2 * digit)) & 3);
     let u_lambda = (hero as f32 + unit(number.reverse_bits(), 0)) / 4.0;
     Common { u_lambda: u_lambda.min(ONE_MINUS_EPSILON), u_time: unit(GOLDEN.wrapping_mul(number), 1) }
 }

@@ -32,3 +32,22 @@ fn groups_are_even() {
         assert!((widest * 32.0 - 1.0).abs() < 1e-4, "{widest}");
     }
 }
+
+/// One hero in each of as many equal parts of the spectrum as there are groups: dispersion leaves the heroes alone.
+#[test]
+fn heroes_are_even() {
+    for seed in 0..10 {
+        // The place of the first group is how far all are shifted within their quarters.
+        let shift = (group(seed, 0).u_lambda * 4.0).fract();
+        for n in [4, 8, 16, 32, 64, 256, 1024_u32] {
+            let part = |number: u32| {
+                let u = group(seed, number.into()).u_lambda * 4.0;
+                let place = (u.fract() - shift + 1.0 + 1e-5).fract();
+                u.floor() as u32 * (n / 4) + (place * (n / 4) as f32) as u32
+            };
+            let mut parts: Vec<u32> = (0..n).map(part).collect();
+            parts.sort_unstable();
+            assert!(parts.iter().copied().eq(0..n), "{n} groups of seed {seed}: {parts:?}");
+        }
+    }
+}
