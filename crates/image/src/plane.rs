@@ -38,6 +38,12 @@ impl Plane {
         self.values.iter().fold(ends, |(low, high), value| (low.min(*value), high.max(*value)))
     }
 
+    /// A number for each pair of two planes of one size.
+    pub(crate) fn zip(&self, other: &Self, f: impl Fn(f32, f32) -> f32 + Sync) -> Self {
+        let values = self.values.par_iter().zip(&other.values).map(|(a, b)| f(*a, *b)).collect();
+        Self::new(self.width, self.height, values)
+    }
+
     /// Each row made from its index, in parallel.
     pub(crate) fn from_rows(width: usize, height: usize, fill: impl Fn(usize, &mut [f32]) + Sync) -> Self {
         let mut plane = Self::zeros(width, height);
@@ -87,6 +93,25 @@ impl Plane {
         })
     }
 
+    /// The largest value of the square that reaches so many pixels from each to all sides.
+    pub(crate) fn largest_around(&self, reach: usize) -> Self {
+        let last = self.height.saturating_sub(1);
+        let of_columns = Self::from_rows(self.width, self.height, |y, row| {
+            row.copy_from_slice(self.row(y));
+            for source in y.saturating_sub(reach)..=(y + reach).min(last) {
+                raise(row, self.row(source));
+            }
+        });
+        Self::from_rows(self.width, self.height, |y, row| {
+            let source = of_columns.row(y);
+            row.copy_from_slice(source);
+            for shift in 1..=reach.min(self.width - 1) {
+                raise(row, &source[shift..]);
+                raise(&mut row[shift..], source);
+            }
+        })
+    }
+
     /// Half the size: each value is the mean of four, of fewer at odd borders.
     pub(crate) fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
@@ -116,6 +141,13 @@ impl Plane {
                 *value = top + (bottom - top) * ty;
             }
         })
+    }
+}
+
+/// Raises values to others that are larger, as far as both go.
+fn raise(values: &mut [f32], others: &[f32]) {
+    for (value, other) in values.iter_mut().zip(others) {
+        *value = if other > value { *other } else { *value };
     }
 }
 
@@ -157,6 +189,20 @@ mod tests {
         assert!((blurred.at(23, 20) - blurred.at(20, 17)).abs() < 1e-8);
         let flat = Plane::new(5, 3, vec![2.5; 15]);
         assert!(flat.blurred(2.0).values.iter().all(|value| (value - 2.5).abs() < 1e-6));
+    }
+
+    /// A spot becomes a square, cut by the borders; reaches beyond the plane are harmless.
+    #[test]
+    fn largest_values_spread() {
+        let mut plane = Plane::new(7, 5, vec![-1.0; 35]);
+        plane.values[7 + 2] = 3.0;
+        let found = plane.largest_around(2);
+        for (i, value) in found.values.iter().enumerate() {
+            let (x, y) = (i % 7, i / 7);
+            assert_eq!(*value, if x <= 4 && y <= 3 { 3.0 } else { -1.0 }, "{x}, {y}");
+        }
+        assert_eq!(plane.largest_around(0), plane);
+        assert_eq!(plane.largest_around(100).values, [3.0; 35]);
     }
 
     #[test]

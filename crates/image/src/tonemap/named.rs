@@ -42,8 +42,12 @@ pub const OPERATORS: &[OperatorSpec] = &[
         doc: "the same with dodging and burning",
         parameters: &[
             KEY,
-            ["sharpness", "4.75", "how little contrast ends a small surrounding; 8 in the paper, with halos"],
-            ["threshold", "0.05", "contrast that ends a surrounding"],
+            [
+                "sharpness",
+                "1",
+                "how much contrast small surroundings may have where it is not bright; 8 in the paper",
+            ],
+            ["threshold", "0.12", "contrast that ends a surrounding; 0.05 in the paper"],
             ["scales", "8", "sizes of surroundings, each 1.6 times the last"],
         ],
     },
