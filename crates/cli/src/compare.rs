@@ -8,12 +8,13 @@ use etendue::image::compare::{
 };
 use etendue::image::{Image, box_downsample};
 use etendue::io::images::{read_image, write_image};
+use etendue::spectrum::ColorSpaceName;
 use serde_json::json;
 
 use crate::args::{CompareArguments, MapArgument};
 use crate::failure::{Failure, Result};
 use crate::list::print;
-use crate::outputs;
+use crate::{outputs, primaries};
 
 /// Everything that was measured.
 struct Measured {
@@ -29,6 +30,9 @@ pub(crate) fn run(arguments: &CompareArguments) -> Result<()> {
     outputs::check_images(&arguments.outputs)?;
     let open = |path| read_image(path).map_err(|error| Failure::Usage(error.to_string()));
     let (mut image, mut reference) = (open(&arguments.image)?, open(&arguments.reference)?);
+    for image in [&mut image, &mut reference] {
+        primaries::convert(image, ColorSpaceName::Srgb);
+    }
     scale(&mut reference, arguments.scale_reference);
     if arguments.box_filter {
         equalize_sizes(&mut image, &mut reference, arguments.clamp);

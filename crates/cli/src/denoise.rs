@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use etendue::image::Image;
 use etendue::image::denoise::{DenoiseError, Denoised, Settings, denoise, spread_fireflies};
-use etendue::io::images::{ExrSettings, read_image, write_image};
+use etendue::io::images::{ExrSettings, read_image};
 
 use crate::args::{DenoiseArguments, DenoiserArgument};
 use crate::failure::{Failure, Result};
@@ -53,7 +53,7 @@ fn run_in_pool(arguments: &DenoiseArguments) -> Result<()> {
         done.push(note);
     }
     image.metadata.insert(DENOISED.to_owned(), done.join("; "));
-    outputs::write_all(&arguments.outputs, |path| write_image(path, &image))?;
+    outputs::write_all(&arguments.outputs, |path| outputs::write(path, &image))?;
     if !arguments.quiet {
         let names: Vec<String> = arguments.outputs.iter().map(|path| path.display().to_string()).collect();
         let seconds = started.elapsed().as_secs_f64();

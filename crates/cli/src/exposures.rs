@@ -8,7 +8,7 @@ use etendue::io::images::{exposure_of_photograph, read_image, write_image};
 
 use crate::args::{FuseArguments, HdrArguments, ResponseArgument};
 use crate::failure::{Failure, Result};
-use crate::outputs;
+use crate::{outputs, report};
 
 /// How smooth recovered responses are, as a weight against what the pixels say.
 const SMOOTHNESS: f32 = 20.0;
@@ -84,6 +84,7 @@ fn photograph(path: &Path) -> Result<Photograph> {
     let Some(pixels) = image.rgb_pixels() else {
         return Err(Failure::Usage(format!("{}: there are no channels R, G, B or Y", path.display())));
     };
+    report::non_finite(&path.display().to_string(), &pixels, "NaN is taken for black, infinity for white");
     // NaN becomes black: it would spread over the whole picture.
     let encode = |v: f32| if v > 0.0 { srgb_encode(v.min(1.0)) } else { 0.0 };
     let encoded = pixels.into_iter().map(|pixel| pixel.map(encode)).collect();

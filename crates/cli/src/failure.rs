@@ -11,6 +11,8 @@ pub(crate) enum Failure {
     Scene,
     /// The user interrupted; what was finished is written: exit code 130.
     Interrupted,
+    /// The user interrupted before anything was finished: the same code.
+    InterruptedEarly,
 }
 
 impl Failure {
@@ -20,7 +22,7 @@ impl Failure {
         match self {
             Self::Running(_) => 1,
             Self::Usage(_) | Self::Scene => 2,
-            Self::Interrupted => 130,
+            Self::Interrupted | Self::InterruptedEarly => 130,
         }
     }
 
@@ -31,6 +33,7 @@ impl Failure {
             Self::Running(message) | Self::Usage(message) => Some(message),
             Self::Scene => None,
             Self::Interrupted => Some("interrupted; what was finished is written"),
+            Self::InterruptedEarly => Some("interrupted before anything was finished; no image is written"),
         }
     }
 }

@@ -8,7 +8,7 @@ use serde_json::json;
 use crate::args::{FalsecolorArguments, PaletteArgument, QuantityArgument, SpreadArgument};
 use crate::failure::{Failure, Result};
 use crate::list::print;
-use crate::{metadata, outputs, report};
+use crate::{metadata, outputs, primaries, report};
 
 /// Metadata key for the unit of a picture's values.
 pub(crate) const UNIT: &str = "etendue.unit";
@@ -30,6 +30,9 @@ pub(crate) fn run(arguments: &FalsecolorArguments) -> Result<()> {
         &pixels,
         "they are left out of the statistics",
     );
+    if !values.iter().any(|value| value.is_finite()) {
+        return Err(refuse("no pixel is finite"));
+    }
     let is_lux = is_lux(&image);
     let default = if is_lux || arguments.reflectance.is_some() {
         QuantityArgument::Illuminance
@@ -89,7 +92,7 @@ fn photometric(image: &Image) -> Option<Vec<f32>> {
     if let (None, Some(y)) = (image.channel("R"), image.channel("Y")) {
         return Some(y.values.iter().map(|y| y * white).collect());
     }
-    let weights = metadata::numbers::<f32, 3>(image, metadata::LUMINANCE).unwrap_or([0.2126, 0.7152, 0.0722]);
+    let weights = primaries::luminance_weights(image);
     let luminance = |p: [f32; 3]| (p[0] * weights[0] + p[1] * weights[1] + p[2] * weights[2]) * white;
     Some(image.rgb_pixels()?.into_iter().map(luminance).collect())
 }

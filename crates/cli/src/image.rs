@@ -1,6 +1,6 @@
 //! `etendue image`: what a picture file holds, and the same in another format.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use etendue::image::{Channel, Image};
 use etendue::io::images::{ExrInfo, ExrPart, read_exr_info, read_image};
@@ -11,6 +11,7 @@ use crate::failure::{Failure, Result};
 use crate::falsecolor::{self, UNIT};
 use crate::info::print_lines;
 use crate::list::print;
+use crate::metadata::{CHROMATICITIES, COLOR_SPACE, LUMINANCE, WHITE_LUMINANCE};
 use crate::{outputs, report};
 
 /// Extensions of pictures that are read.
@@ -125,15 +126,39 @@ fn convert(arguments: &ImageConvertArguments) -> Result<()> {
             Failure::Usage(format!("{}: no layer {name}; there are {there}", arguments.image.display()))
         })?;
         // Of the layers of a probe's grid only one is illuminance as the grid is.
-        if name != "direct" && falsecolor::is_lux(&image) {
+        if !is_light(name) || name != "direct" && falsecolor::is_lux(&image) {
             image.metadata.remove(UNIT);
         }
+        if !is_light(name) {
+            for key in [WHITE_LUMINANCE, LUMINANCE, COLOR_SPACE, CHROMATICITIES] {
+                image.metadata.remove(key);
+            }
+        }
+    }
+    if let Some(pixels) = image.rgb_pixels() {
+        let holds_all = |path: &PathBuf| matches!(outputs::extension(path).as_str(), "exr" | "pfm");
+        if !arguments.outputs.iter().all(holds_all) {
+            let name = arguments.image.display().to_string();
+            report::non_finite(&name, &pixels, "NaN is written black, infinity as the largest value");
+        }
+    } else if let Some(path) = arguments.outputs.iter().find(|path| outputs::extension(path) != "exr") {
+        let what = arguments.layer.as_ref().map_or_else(String::new, |layer| format!(" of layer {layer}"));
+        return Err(Failure::Usage(format!(
+            "{}: the channels{what} are no colour, which only .exr can hold",
+            path.display()
+        )));
     }
     let settings = outputs::exr_settings(arguments.exr);
     if arguments.exr.half {
         warn_of_overflow(&image);
     }
     outputs::write_all(&arguments.outputs, |path| outputs::write_with(path, &image, settings))
+}
+
+/// False of layers of features and of statistics, whose values are no radiance.
+fn is_light(layer: &str) -> bool {
+    let root = layer.split('.').next().unwrap_or(layer);
+    !["Albedo", "N", "Ns", "P", "depth", "sums", "variance"].contains(&root)
 }
 
 /// Half precision ends at 65504.

@@ -23,6 +23,7 @@ mod outputs;
 mod photon_file;
 mod photons;
 mod preview;
+mod primaries;
 mod probe;
 mod progress;
 mod render;

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use etendue::image::Image;
-use etendue::io::images::{read_image, write_image};
+use etendue::io::images::read_image;
 use etendue::scene::film::FilmSums;
 
 use crate::args::MergeArguments;
@@ -30,7 +30,7 @@ pub(crate) fn run(arguments: &MergeArguments) -> Result<()> {
     check_one_scene(&parts)?;
     let image =
         if parts.iter().all(|part| part.sums.is_some()) { merge_exactly(parts)? } else { average(parts)? };
-    outputs::write_all(&arguments.outputs, |path| write_image(path, &image))
+    outputs::write_all(&arguments.outputs, |path| outputs::write(path, &image))
 }
 
 fn open(path: &Path) -> Result<Part> {

@@ -10,6 +10,7 @@ use etendue::io::images::{
 
 use crate::args::ExrArguments;
 use crate::failure::{Failure, Result};
+use crate::primaries;
 
 /// Extensions of the formats that are written.
 const FORMATS: [&str; 5] = ["exr", "png", "ppm", "pfm", "hdr"];
@@ -78,9 +79,18 @@ pub(crate) fn exr_settings(arguments: ExrArguments) -> ExrSettings {
     }
 }
 
-/// Writes an image in the format of its name.
+/// Writes an image in the format of its name. Formats that cannot state primaries have those of sRGB.
 pub(crate) fn write_with(path: &Path, image: &Image, exr: ExrSettings) -> WriteResult {
-    if extension(path) == "exr" { write_exr(path, image, exr) } else { write_image(path, image) }
+    if extension(path) == "exr" {
+        write_exr(path, image, exr)
+    } else {
+        write_image(path, &primaries::for_untold(image))
+    }
+}
+
+/// The same with the usual settings.
+pub(crate) fn write(path: &Path, image: &Image) -> WriteResult {
+    write_with(path, image, ExrSettings::default())
 }
 
 type WriteResult = std::result::Result<(), ImageError>;

@@ -95,6 +95,11 @@ fn points(arguments: &ProbeArguments) -> Result<Vec<ProbePoint>> {
     if n as usize * m as usize > MOST_POINTS {
         return refuse("a grid has at most 1048576 fields");
     }
+    let [side, up] = [u, v].map(|[x, y, z]| Vector3::new(x, y, z));
+    let across = side.cross(up).length();
+    if !(across > 0.0 && across.is_finite()) {
+        return refuse("--u and --v are the sides of the grid: neither is 0, nor are they parallel");
+    }
     let corner = arguments.at[0];
     let point = |i: i32, j: i32| {
         let (s, t) = ((i as f32 + 0.5) / n as f32, (j as f32 + 0.5) / m as f32);

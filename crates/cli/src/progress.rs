@@ -147,9 +147,14 @@ impl Watch {
         }
     }
 
+    /// Ends the progress bar.
+    pub(crate) fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+
     /// Ends the progress bar and keeps the last state.
     pub(crate) fn finish(&self, film: &Film, integrator: &dyn Integrator) {
-        self.bar.finish_and_clear();
+        self.clear();
         if let Some(plan) = &self.checkpoint {
             plan.write(film, integrator.save());
         }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use etendue::io::checkpoint::read_checkpoint;
 use etendue::scene::{Film, Scene};
 use etendue::transport::lpe::PathExpressions;
-use etendue::transport::{Integrator, Outcome, Stop, method_name, render, with_own_layers};
+use etendue::transport::{Integrator, Outcome, Passes, Stop, method_name, render, with_own_layers};
 
 use crate::args::{RenderArguments, WavelengthArgument};
 use crate::failure::{Failure, Result};
@@ -43,6 +43,14 @@ fn run_in_pool(arguments: &RenderArguments, started: Instant) -> Result<()> {
     if arguments.resume {
         resume(&mut job, arguments.quiet)?;
     }
+    if job.integrator.passes() == Passes::Sequential
+        && job.film.sums().n_missing(&(0..job.stop.passes.start)) > 0
+    {
+        return Err(Failure::Usage(format!(
+            "--passes {}..{}: each pass of this method depends on those before, so that it cannot be split over machines; render from 0, or --resume from a checkpoint",
+            job.stop.passes.start, job.stop.passes.end
+        )));
+    }
     let seconds_build = started.elapsed().as_secs_f64();
 
     catch_interruption();
@@ -51,6 +59,17 @@ fn run_in_pool(arguments: &RenderArguments, started: Instant) -> Result<()> {
     let watch = Watch::new(&job.film, &job.stop, arguments.time, job.checkpoint.clone(), show);
     let outcome = render(&job.scene, job.integrator.as_mut(), &mut job.film, &job.stop, &watch);
     let time = clock.elapsed();
+    if outcome == Outcome::Stopped && watch.n_samples() == 0 && job.film.n_passes() == 0 {
+        watch.clear();
+        let names: Vec<String> = job.outputs.iter().map(|path| path.display().to_string()).collect();
+        // A picture of nothing would take the place of an older one.
+        return Err(if is_interrupted() {
+            Failure::InterruptedEarly
+        } else {
+            let message = "nothing was rendered in the time given; allow more";
+            Failure::Running(format!("{}: {message}", names.join(", ")))
+        });
+    }
     watch.finish(&job.film, job.integrator.as_ref());
 
     // A failure of one file keeps none of the others from being written.

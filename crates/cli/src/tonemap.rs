@@ -6,12 +6,11 @@ use etendue::image::tonemap::{
 use etendue::image::{Image, srgb_encode};
 use etendue::io::images::{DisplayPng, read_image, write_display_png, write_image, write_png, write_ppm};
 use etendue::spectrum::cmyk::Cmyk;
-use etendue::spectrum::{ColorSpace, ColorSpaceName, Xyz, white_balance};
+use etendue::spectrum::{ColorSpace, ColorSpaceName, Primaries, Xyz, white_balance};
 
 use crate::args::{EncodingArgument, Exposure, TonemapArguments};
 use crate::failure::{Failure, Result};
-use crate::metadata::{self, COLOR_SPACE};
-use crate::{falsecolor, outputs, preview, report};
+use crate::{falsecolor, metadata, outputs, preview, primaries, report};
 
 /// Runs the command.
 pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
@@ -42,7 +41,7 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
         )));
     }
     report::non_finite(&name, &pixels, "NaN is shown black, infinity white");
-    convert_primaries(&mut image, space);
+    leave_light(&mut image, space);
     if let Some(white) = arguments.white_balance {
         balance_white(&mut image, space, white);
     }
@@ -64,7 +63,7 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
     };
     if let Some(wish) = arguments.preview {
         let mut shown = mapped.clone();
-        convert_from(&mut shown, space, ColorSpaceName::Srgb);
+        primaries::convert_from(&mut shown, Primaries::of(space), ColorSpaceName::Srgb);
         preview::show(&shown, wish);
     }
     if arguments.cmyk {
@@ -106,23 +105,12 @@ fn with_options(arguments: &TonemapArguments) -> Operator {
 }
 
 /// What a picture tells of light, and no longer holds once it is made for a display.
-const PHOTOMETRIC: [&str; 4] =
-    [metadata::CHROMATICITIES, metadata::LUMINANCE, metadata::WHITE_LUMINANCE, falsecolor::UNIT];
+const PHOTOMETRIC: [&str; 3] = [metadata::LUMINANCE, metadata::WHITE_LUMINANCE, falsecolor::UNIT];
 
 /// Takes a picture to the primaries of a space from those that it states, else from those of sRGB.
-fn convert_primaries(image: &mut Image, to: ColorSpaceName) {
-    let stated = image.metadata.remove(COLOR_SPACE);
+fn leave_light(image: &mut Image, to: ColorSpaceName) {
+    primaries::convert(image, to);
     image.metadata.retain(|key, _| !PHOTOMETRIC.contains(&key.as_str()));
-    let stated = stated.and_then(|name| ColorSpaceName::ALL.into_iter().find(|space| space.name() == name));
-    convert_from(image, stated.unwrap_or(ColorSpaceName::Srgb), to);
-}
-
-/// Takes a picture from the primaries of one space to those of another; the white stays the same light.
-fn convert_from(image: &mut Image, from: ColorSpaceName, to: ColorSpaceName) {
-    if from != to {
-        let (from, to) = (ColorSpace::get(from), ColorSpace::get(to));
-        map_pixels(image, |rgb| to.to_rgb(from.to_xyz(rgb)));
-    }
 }
 
 fn map_pixels(image: &mut Image, f: impl Fn([f32; 3]) -> [f32; 3]) {
@@ -167,10 +155,10 @@ mod tests {
     #[test]
     fn light_is_not_told_of_displays() {
         let mut image = Image::rgb(1, 1, vec![[0.5; 3]]);
-        for key in PHOTOMETRIC.into_iter().chain([COLOR_SPACE, "software"]) {
+        for key in PHOTOMETRIC.into_iter().chain([metadata::COLOR_SPACE, "software"]) {
             image.metadata.insert(key.to_owned(), "rec2020".to_owned());
         }
-        convert_primaries(&mut image, ColorSpaceName::Srgb);
+        leave_light(&mut image, ColorSpaceName::Srgb);
         assert_eq!(image.metadata.into_keys().collect::<Vec<_>>(), ["software"]);
     }
 }

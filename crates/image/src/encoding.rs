@@ -76,19 +76,33 @@ pub fn srgb_encode(linear: f32) -> f32 {
     (1.055 * f64::from(linear).powf(1.0 / 2.4) - 0.055) as f32
 }
 
-/// Value in [0, 1] that stands for a luminance in cd/m^2 by the perceptual quantizer of SMPTE ST 2084, whose steps are about as
-/// fine as the eye's; 0 to 10,000 cd/m^2, beyond which it is clipped. NaN becomes 0.
+/// The perceptual quantizer of SMPTE ST 2084, whose steps are about as fine as the eye's.
+mod pq {
+    pub(super) const M1: f64 = 2610.0 / 16384.0;
+    pub(super) const M2: f64 = 2523.0 / 4096.0 * 128.0;
+    pub(super) const C1: f64 = 3424.0 / 4096.0;
+    pub(super) const C2: f64 = 2413.0 / 4096.0 * 32.0;
+    pub(super) const C3: f64 = 2392.0 / 4096.0 * 32.0;
+    /// Luminance of the value 1 in cd/m^2.
+    pub(super) const PEAK: f64 = 10_000.0;
+}
+
+/// Value in [0, 1] that stands for a luminance in cd/m^2 by the perceptual quantizer of SMPTE ST 2084; 0 to 10,000 cd/m^2, beyond
+/// which it is clipped. NaN becomes 0.
 #[must_use]
 pub fn pq_encode(luminance: f32) -> f32 {
-    const M1: f64 = 2610.0 / 16384.0;
-    const M2: f64 = 2523.0 / 4096.0 * 128.0;
-    const C1: f64 = 3424.0 / 4096.0;
-    const C2: f64 = 2413.0 / 4096.0 * 32.0;
-    const C3: f64 = 2392.0 / 4096.0 * 32.0;
-    let shown = if luminance.is_nan() { 0.0 } else { luminance.clamp(0.0, 10_000.0) };
-    let share = f64::from(shown) / 10_000.0;
-    let power = share.powf(M1);
-    ((C1 + C2 * power) / (1.0 + C3 * power)).powf(M2) as f32
+    let shown = if luminance.is_nan() { 0.0 } else { f64::from(luminance).clamp(0.0, pq::PEAK) };
+    let share = shown / pq::PEAK;
+    let power = share.powf(pq::M1);
+    ((pq::C1 + pq::C2 * power) / (1.0 + pq::C3 * power)).powf(pq::M2) as f32
+}
+
+/// Luminance in cd/m^2 of a value in [0, 1]: the inverse of [`pq_encode`].
+#[must_use]
+pub fn pq_decode(stored: f32) -> f32 {
+    let power = f64::from(stored).clamp(0.0, 1.0).powf(1.0 / pq::M2);
+    let share = (power - pq::C1).max(0.0) / (pq::C2 - pq::C3 * power);
+    (share.powf(1.0 / pq::M1) * pq::PEAK) as f32
 }
 
 /// Linear light of each of the 256 values of a byte under one [`Encoding`].

@@ -16,7 +16,7 @@ mod texels;
 pub mod tonemap;
 
 pub use buffer::{Channel, Image};
-pub use encoding::{DecodeTable, Encoding, pq_encode, srgb_decode, srgb_encode};
+pub use encoding::{DecodeTable, Encoding, pq_decode, pq_encode, srgb_decode, srgb_encode};
 pub use resample::box_downsample;
 pub use texels::{Chromaticities, TexelData, Texels};
 

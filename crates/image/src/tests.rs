@@ -1,6 +1,6 @@
 use crate::{
     Channel, Chromaticities, DecodeTable, Encoding, Image, TexelData, Texels, box_downsample, luminance,
-    pq_encode, srgb_decode, srgb_encode,
+    pq_decode, pq_encode, srgb_decode, srgb_encode,
 };
 
 /// White has luminance 1 whatever the primaries' weights.
@@ -174,7 +174,10 @@ fn chromaticities_travel() {
 fn perceptual_quantizer() {
     for (luminance, code) in [(0.0, 7.3e-7), (100.0, 0.508_078), (1000.0, 0.751_827), (10_000.0, 1.0)] {
         assert!((pq_encode(luminance) - code).abs() < 1e-6, "{luminance}: {}", pq_encode(luminance));
+        let back = pq_decode(pq_encode(luminance));
+        assert!((back - luminance).abs() <= 1e-5 * luminance + 1e-6, "{luminance}: {back}");
     }
+    assert_eq!([pq_decode(-1.0), pq_decode(2.0)], [0.0, 10_000.0]);
     assert_eq!(
         [pq_encode(f32::INFINITY), pq_encode(f32::NAN), pq_encode(-1.0)],
         [1.0, pq_encode(0.0), pq_encode(0.0)]

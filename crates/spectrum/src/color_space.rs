@@ -211,7 +211,7 @@ impl ColorSpace {
         let illuminant: Vec<f32> = (0..N_DENSE).map(|i| piecewise_linear(&samples, dense_nm(i))).collect();
         let white = integrate_1nm(|nm| illuminant[(nm - LAMBDA_MIN_NM) as usize])
             .map(|v| f64::from(v / CIE_Y_INTEGRAL));
-        let xyz_from_rgb = matrix_to_xyz(&primaries, white);
+        let xyz_from_rgb = matrix_to_xyz(&primaries, white).expect("primaries span the space of colours");
         let rgb_from_xyz = invert(&xyz_from_rgb);
         Self {
             name,
@@ -254,13 +254,12 @@ const fn definition(name: ColorSpaceName) -> ([[f64; 2]; 3], &'static str) {
     }
 }
 
-/// The matrix from RGB to XYZ whose white has the given XYZ.
-fn matrix_to_xyz(primaries: &[[f64; 2]; 3], white: [f64; 3]) -> Matrix3 {
+/// The matrix from RGB to XYZ whose white has the given XYZ; `None` if the primaries do not span the space of colours.
+pub(crate) fn matrix_to_xyz(primaries: &[[f64; 2]; 3], white: [f64; 3]) -> Option<Matrix3> {
     let columns = primaries.map(|xy| xyz_of(xy, 1.0));
     let unscaled = crate::matrix::transpose(&columns);
-    let scale = solve(&unscaled, white).expect("primaries span the space of colours");
-    debug_assert!(transform(&unscaled, scale)[1] > 0.0);
-    unscaled.map(|row| std::array::from_fn(|c| row[c] * scale[c]))
+    let scale = solve(&unscaled, white)?;
+    Some(unscaled.map(|row| std::array::from_fn(|c| row[c] * scale[c])))
 }
 
 /// Factor and rest in [0, 1/2], where reflectances are smooth, of a non-negative RGB.

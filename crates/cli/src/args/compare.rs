@@ -27,7 +27,7 @@ pub(crate) struct CompareArguments {
     #[arg(long)]
     pub(crate) box_filter: bool,
     /// Multiply the reference by this first
-    #[arg(long, value_name = "FACTOR", default_value = "1")]
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = parse_largest, allow_negative_numbers = true)]
     pub(crate) scale_reference: f32,
     /// Exposure for FLIP, SSIM and pictures of both, in stops
     #[arg(long, value_name = "EV", default_value = "0", value_parser = parse_stops, allow_negative_numbers = true)]
@@ -69,9 +69,9 @@ fn parse_pixels_per_degree(text: &str) -> Result<f32, String> {
     number.ok_or_else(|| "a number from 1 to 1000 is needed".to_owned())
 }
 
-/// A range from 0 needs an end above it.
+/// A range from 0 needs an end above it, and a factor leaves something.
 fn parse_largest(text: &str) -> Result<f32, String> {
-    let number = text.parse::<f32>().ok().filter(|number| *number > 0.0);
+    let number = text.parse::<f32>().ok().filter(|number| *number > 0.0 && number.is_finite());
     number.ok_or_else(|| "a positive number is needed".to_owned())
 }
 

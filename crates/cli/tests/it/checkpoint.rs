@@ -153,6 +153,21 @@ fn damaged_checkpoints() {
     }
 }
 
+/// Passes that depend on those before are not rendered alone.
+#[test]
+fn dependent_passes_are_not_split() {
+    let folder = Folder::with_scene(ROOM);
+    let method = "--integrator ppm:radiusupdate=perpixel --resolution 8x8";
+    folder
+        .run(&format!("render scene.pbrt {method} --passes 2..4 -o b.exr"))
+        .expect(2)
+        .says("each pass of this method depends on those before");
+    folder.run(&format!("render scene.pbrt {method} --passes 0..2 --checkpoint c -o a.exr")).expect(0);
+    folder
+        .run(&format!("render scene.pbrt {method} --passes 2..4 --checkpoint c --resume -o b.exr"))
+        .expect(0);
+}
+
 #[cfg(unix)]
 mod signals {
     use super::*;
@@ -204,5 +219,23 @@ mod signals {
         assert!(!folder.path("state").exists());
         // Nor can its sums be merged.
         folder.run("merge out.exr out.exr -o merged.exr").expect(2).says("it holds no complete pass");
+    }
+
+    /// Where nothing is finished, as while photons are traced, an older picture stays.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn interrupted_before_the_first_sample() {
+        use crate::support::signals::wait_for_handler;
+
+        let folder = Folder::with_scene(ROOM);
+        std::fs::write(folder.path("out.exr"), "an older picture").expect("written");
+        let child = folder.start(&(arguments(4) + " --integrator photonmap:globalphotons=60000000"));
+        wait_for_handler(&child);
+        send(&child, "-INT");
+        let (code, text) = end(child);
+        assert_eq!(code, Some(130), "{text}");
+        assert!(text.contains("interrupted before anything was finished"), "{text}");
+        assert_eq!(std::fs::read_to_string(folder.path("out.exr")).expect("read"), "an older picture");
+        assert!(!folder.path("state").exists());
     }
 }

@@ -1,14 +1,15 @@
 //! PNG for displays that show more than sRGB. The chunk `cICP` of the third edition of PNG names primaries and transfer curve by
 //! the code points of ITU-T H.273.
 
-use std::io::Write;
+use std::io::{Seek, SeekFrom, Write};
 
 use etendue_image::tonemap::{Dither, Quantization, to_u8};
-use etendue_image::{Image, pq_encode};
+use etendue_image::{Encoding, Image, pq_decode, pq_encode};
+use image::ImageFormat;
 use png::chunk::ChunkType;
 
 use super::write::{no_color, size_u32};
-use super::{ImageErrorCause, Outcome};
+use super::{ImageErrorCause, Opened, Outcome, raster};
 
 /// What a display shows.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -67,6 +68,46 @@ pub(super) fn encode(out: &mut impl Write, image: &Image, display: DisplayPng) -
     writer.write_chunk(ChunkType(*b"cICP"), &display.code_points()).map_err(cause)?;
     writer.write_image_data(&bytes).map_err(cause)?;
     writer.finish().map_err(cause)
+}
+
+/// Luminance in cd/m^2 of the value 1 of pictures that are read from PQ. [ITU-R BT.2408]
+const PQ_WHITE: f32 = 203.0;
+/// Code points of transfer functions. [H.273, table 3]
+const TRANSFER_LINEAR: u8 = 8;
+const TRANSFER_PQ: u8 = 16;
+
+/// Reads a PNG by the code points that it states: linear RGB, with its chromaticities if they are not those of sRGB.
+pub(super) fn read(file: &mut Opened) -> Outcome<Image> {
+    let stated = code_points(file)?;
+    let texels = raster::read(file, ImageFormat::Png)?;
+    let Some((primaries, transfer)) = stated else { return Ok(texels.to_image(Encoding::Srgb)) };
+    let encoding =
+        if [TRANSFER_LINEAR, TRANSFER_PQ].contains(&transfer) { Encoding::Linear } else { Encoding::Srgb };
+    let mut image = texels.to_image(encoding);
+    if transfer == TRANSFER_PQ {
+        for channel in image.channels.iter_mut().filter(|channel| channel.name != "A") {
+            channel.values.iter_mut().for_each(|value| *value = pq_decode(*value) / PQ_WHITE);
+        }
+        image.metadata.insert("whiteLuminance".to_owned(), PQ_WHITE.to_string());
+    }
+    // With the white D65. [H.273, table 2]
+    let chromaticities = match primaries {
+        9 => Some("0.708 0.292 0.17 0.797 0.131 0.046 0.3127 0.329"),
+        12 => Some("0.68 0.32 0.265 0.69 0.15 0.06 0.3127 0.329"),
+        _ => None,
+    };
+    image.metadata.extend(chromaticities.map(|text| ("chromaticities".to_owned(), text.to_owned())));
+    Ok(image)
+}
+
+/// Code points of primaries and of the transfer function. What is malformed is left to the decoder of the pixels.
+fn code_points(file: &mut Opened) -> Outcome<Option<(u8, u8)>> {
+    let mut decoder = png::Decoder::new(&mut file.reader);
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let stated = decoder.read_info().ok().and_then(|reader| reader.info().coding_independent_code_points);
+    file.reader.seek(SeekFrom::Start(0))?;
+    Ok(stated.map(|points| (points.color_primaries, points.transfer_function)))
 }
 
 fn cause(error: png::EncodingError) -> ImageErrorCause {

@@ -82,7 +82,8 @@ fn texels_of(mut file: Opened) -> Outcome<Texels> {
     })
 }
 
-/// Reads a picture as planes of linear `f32`, top row first; encoded integers are taken to be sRGB.
+/// Reads a picture as planes of linear `f32`, top row first; encoded integers are taken to be sRGB, but for PNG that states
+/// otherwise in code points (`cICP`).
 ///
 /// From an OpenEXR file come all channels of all layers, named `layer.channel`, and its text and number attributes
 /// as metadata.
@@ -97,6 +98,7 @@ pub fn read_image(path: impl AsRef<Path>) -> Result<Image, ImageError> {
             Format::OpenExr => openexr::read_image(&mut file),
             Format::Pfm => Ok(pfm::read(&mut file)?.to_image(Encoding::Linear)),
             Format::Netpbm => Ok(netpbm::read(&mut file)?.to_image(Encoding::Srgb)),
+            Format::Raster(ImageFormat::Png) => display_png::read(&mut file),
             Format::Raster(format) => Ok(raster::read(&mut file, format)?.to_image(Encoding::Srgb)),
         })
     })

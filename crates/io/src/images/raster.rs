@@ -1,5 +1,7 @@
 //! PNG, JPEG, TGA, QOI and Radiance HDR through the `image` crate.
 
+use std::io::{Read, Seek, SeekFrom};
+
 use etendue_image::{TexelData, Texels};
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
@@ -11,6 +13,9 @@ pub(super) const READABLE: [ImageFormat; 5] =
 
 /// Reads the pixels in the width of the file; palettes and bits become bytes.
 pub(super) fn read(file: &mut Opened, format: ImageFormat) -> Outcome<Texels> {
+    if format == ImageFormat::Jpeg {
+        check_end_of_jpeg(&mut file.reader)?;
+    }
     let (n_bytes, mut reader) = (file.n_bytes, ImageReader::with_format(&mut file.reader, format));
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_BYTES);
@@ -35,4 +40,28 @@ pub(super) fn read(file: &mut Opened, format: ImageFormat) -> Outcome<Texels> {
     };
     // The 8-bit mantissas of Radiance files fit halves unless very bright or dark.
     Ok(Texels::new(width as usize, height as usize, n_channels, data).compact())
+}
+
+/// Refuses a JPEG that was cut off: decoders show what is missing in grey. Its markers are followed to that of the end.
+fn check_end_of_jpeg(reader: &mut (impl Read + Seek)) -> Outcome<()> {
+    const END: u8 = 0xd9;
+    let mut bytes = Vec::new();
+    reader.read_to_end(&mut bytes)?;
+    reader.seek(SeekFrom::Start(0))?;
+    let mut at = 0;
+    while let Some(next) = bytes.get(at..).and_then(|rest| rest.windows(2).position(|pair| pair[0] == 0xff)) {
+        at += next + 1;
+        match bytes[at] {
+            END => return Ok(()),
+            // Filling, a byte of pixels, and markers without a segment.
+            0xff => {}
+            0x00 | 0x01 | 0xd0..=0xd8 => at += 1,
+            _ => {
+                let length =
+                    bytes.get(at + 1..at + 3).map_or(0, |pair| u16::from_be_bytes([pair[0], pair[1]]));
+                at += 1 + usize::from(length);
+            }
+        }
+    }
+    Err(ImageErrorCause::Truncated("the marker of its end is missing".to_owned()))
 }

@@ -283,6 +283,23 @@ fn integer_formats_are_read() {
     assert_eq!(read_image(&path).expect("a readable image").channels[0].name, "Y");
 }
 
+/// Decoders of JPEG show what is missing in grey, without a word.
+#[test]
+fn jpegs_without_their_end_are_refused() {
+    let folder = Folder::new();
+    let whole = encoded(&rgb8(64, 48), ImageFormat::Jpeg);
+    let path = folder.put("a.jpg", &whole);
+    assert!(read_image(&path).is_ok());
+    for quarters in 1..4 {
+        let path = folder.put("cut.jpg", &whole[..whole.len() * quarters / 4]);
+        let message = fails(read_image(&path), &path, |cause| matches!(cause, Cause::Truncated(_)));
+        assert!(message.contains("cut.jpg"), "{message}");
+        fails(read_texels(&path), &path, |cause| matches!(cause, Cause::Truncated(_)));
+    }
+    let with_rest = [&whole, &b"what cameras append"[..]].concat();
+    assert!(read_image(folder.put("rest.jpg", &with_rest)).is_ok());
+}
+
 /// The contents decide, not the name.
 #[test]
 fn contents_win_over_extension() {

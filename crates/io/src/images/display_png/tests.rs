@@ -27,13 +27,23 @@ fn display_p3() {
     assert!(bytes.windows(4).any(|w| w == b"cHRM"));
     let pixels = read.rgb_pixels().expect("colour");
     assert!((pixels[0][2] - 0.5).abs() < 0.005 && pixels[0][0] == 1.0 && pixels[1] == [1.0, 0.0, 0.0]);
+    assert!(read.metadata["chromaticities"].starts_with("0.68 0.32 0.265 0.69"));
 }
 
 /// PQ has sixteen bits of the luminances that they stand for.
 #[test]
 fn rec_2100_pq() {
     let image = Image::rgb(3, 1, vec![[1.0, 0.0, 0.1], [1e6, 0.5, 0.5], [f32::NAN, -1.0, 5.0]]);
-    let (bytes, _) = written(&image, DisplayPng::Pq { white_luminance: 200.0 });
+    let (bytes, read) = written(&image, DisplayPng::Pq { white_luminance: 200.0 });
+    let luminances: Vec<f32> =
+        read.rgb_pixels().expect("colour").iter().flatten().map(|v| v * 203.0).collect();
+    for (read, written) in
+        luminances.into_iter().zip([200.0, 0.0, 20.0, 10_000.0, 100.0, 100.0, 0.0, 0.0, 1000.0])
+    {
+        assert!((read - written).abs() <= 2e-3 * written, "{read} {written}");
+    }
+    assert_eq!(read.metadata["whiteLuminance"], "203");
+    assert!(read.metadata["chromaticities"].starts_with("0.708 0.292 0.17 0.797"));
     assert_eq!(code_points(&bytes), Some([9, 16, 0, 1]));
     let mut reader =
         png::Decoder::new(BufReader::new(std::io::Cursor::new(bytes))).read_info().expect("a PNG");

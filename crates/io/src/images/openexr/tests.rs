@@ -178,3 +178,18 @@ fn flipped_bits() {
         let _ = read_exr_info(&path);
     }
 }
+
+/// Attributes come in one order, though the format asks for none.
+#[test]
+fn equal_pictures_are_equal_files() {
+    let (_folder, path) = folder();
+    let image = render(9, 5);
+    let bytes: Vec<Vec<u8>> = (0..8)
+        .map(|_| {
+            write_exr(&path, &image, ExrSettings::default()).expect("written");
+            fs::read(&path).expect("read")
+        })
+        .collect();
+    assert!(bytes.iter().all(|other| *other == bytes[0]));
+    assert_eq!(read_image(&path).expect("a picture").metadata, image.metadata);
+}

@@ -1,6 +1,6 @@
 //! Writing OpenEXR files.
 
-use std::io::{Seek, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 
 use etendue_image::{Channel, Image};
 use exr::image::write::WritableImage;
@@ -77,7 +77,68 @@ pub(in super::super) fn write(
     let layer = Layer::new(size, LayerAttributes::default(), encoding, channels);
     let mut exr = exr::image::Image::new(ImageAttributes::with_size(size), layer);
     set_attributes(&image.metadata, size, &mut exr.attributes, &mut exr.layer_data.attributes);
-    Ok(exr.write().to_buffered(out)?)
+    let mut recorded = Recorded { out, start: Vec::new(), position: 0 };
+    exr.write().to_buffered(&mut recorded)?;
+    let Recorded { out, start, .. } = recorded;
+    if let Some(header) = sorted_header(&start) {
+        out.seek(SeekFrom::Start(0))?;
+        out.write_all(&header)?;
+        out.seek(SeekFrom::End(0))?;
+    }
+    Ok(())
+}
+
+/// The most bytes of a file among which its header is looked for.
+const LARGEST_HEADER: usize = 1 << 20;
+
+/// Keeps the first bytes that are written.
+struct Recorded<W> {
+    out: W,
+    start: Vec<u8>,
+    position: u64,
+}
+
+impl<W: Write> Write for Recorded<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let n = self.out.write(bytes)?;
+        if self.position == self.start.len() as u64 {
+            let room = LARGEST_HEADER.saturating_sub(self.start.len());
+            self.start.extend(&bytes[..n.min(room)]);
+        }
+        self.position += n as u64;
+        Ok(n)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl<W: Seek> Seek for Recorded<W> {
+    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
+        self.position = self.out.seek(place)?;
+        Ok(self.position)
+    }
+}
+
+/// The header of a file of one part with its attributes in order of their names: the `exr` crate writes them in an order that
+/// differs from run to run, and equal pictures shall be equal files. `None` if the header is not understood.
+fn sorted_header(start: &[u8]) -> Option<Vec<u8>> {
+    const MAGIC_AND_VERSION: usize = 8;
+    let mut attributes = Vec::new();
+    let mut at = MAGIC_AND_VERSION;
+    while *start.get(at)? != 0 {
+        let end_of_text = |from: usize| Some(from + start.get(from..)?.iter().position(|byte| *byte == 0)?);
+        let name = end_of_text(at)?;
+        let size_at = end_of_text(name + 1)? + 1;
+        let size = u32::from_le_bytes(start.get(size_at..size_at + 4)?.try_into().ok()?) as usize;
+        let end = size_at.checked_add(4)?.checked_add(size)?;
+        attributes.push((&start[at..name], start.get(at..end)?));
+        at = end;
+    }
+    attributes.sort_unstable();
+    let bytes = attributes.iter().flat_map(|(_, bytes)| bytes.iter());
+    Some(start[..MAGIC_AND_VERSION].iter().chain(bytes).copied().collect())
 }
 
 fn samples(channel: &Channel, numbers: ExrNumbers) -> FlatSamples {
