@@ -1,6 +1,10 @@
 //! Histogram adjustment (Larson, Rushmeier and Piatko 1997, "A Visibility Matching Tone Reproduction Operator for High Dynamic
 //! Range Scenes"): common luminances get much of the display's range and rare ones little, but nowhere does the display show
 //! more contrast than the world.
+//!
+//! The display's range, in logarithms, is shared out among bins of the world's luminances by their counts. A bin of width `w` may have
+//! at most `w / ln(contrast)` of it, which is the contrast that it has in the world. The paper cuts counts above that ceiling
+//! until the rest is within a tolerance, since each cut lowers the ceiling; here the shares are solved for, and nothing is above.
 
 use crate::plane::Plane;
 
@@ -20,10 +24,8 @@ impl Default for HistogramAdjustment {
 }
 
 const N_BINS: usize = 100;
-/// Trimming ends when so small a share of the counts is left above the ceiling.
-const TOLERANCE: f32 = 0.025;
-/// Rounds of trimming; each removes what is above the ceiling, which lowers the ceiling.
-const MAX_ROUNDS: usize = 100;
+/// What each bin has at least, as a share of all counts: so that range which no luminance may have goes to those between them.
+const LEAST: f64 = 1e-6;
 
 /// The curve: cumulative shares of bins of equal width in the logarithm of luminance.
 #[derive(Clone, Debug)]
@@ -46,47 +48,38 @@ impl HistogramAdjustment {
         }
         let (low, high) = glances.range();
         let bin_width = ((high - low) / N_BINS as f32).max(1e-6);
-        let mut counts = vec![0.0_f32; N_BINS];
+        let mut counts = vec![LEAST * glances.values.len() as f64; N_BINS];
         for value in &glances.values {
             counts[(((value - low) / bin_width) as usize).min(N_BINS - 1)] += 1.0;
         }
-        let log_contrast = self.contrast.ln();
-        let fits = trim(&mut counts, bin_width / log_contrast);
-        let total: f32 = counts.iter().sum();
-        let mut cumulative = vec![0.0];
-        for (bin, count) in counts.iter().enumerate() {
-            let share = if fits || total == 0.0 { 1.0 / N_BINS as f32 } else { count / total };
-            cumulative.push(cumulative[bin] + share);
-        }
-        if fits {
-            // The world has less contrast than the display, and is shown as it is.
-            let log_contrast = bin_width * N_BINS as f32;
-            return AdjustedCurve { low, bin_width, cumulative, log_contrast, black: 0.0 };
-        }
-        AdjustedCurve { low, bin_width, cumulative, log_contrast, black: (-log_contrast).exp() }
+        let world = bin_width * N_BINS as f32;
+        let display = self.contrast.ln();
+        // Where the world has less contrast than the display it is shown as it is.
+        let (log_contrast, black) = if world <= display { (world, 0.0) } else { (display, (-display).exp()) };
+        let mut sum = 0.0;
+        let sums = shares(&counts, f64::from(bin_width / log_contrast)).into_iter().map(|share| {
+            sum += share;
+            sum as f32
+        });
+        let cumulative = [0.0].into_iter().chain(sums).collect();
+        AdjustedCurve { low, bin_width, cumulative, log_contrast, black }
     }
 }
 
-/// Cuts counts that would show more contrast than there is: a bin may hold at most the total times its width over the
-/// display's range, both in logarithms. True if nothing is left, since all of the world fits the display.
-fn trim(counts: &mut [f32], ceiling_share: f32) -> bool {
-    let all: f32 = counts.iter().sum();
-    for _ in 0..MAX_ROUNDS {
-        let total: f32 = counts.iter().sum();
-        if total < TOLERANCE * all || ceiling_share * counts.len() as f32 <= 1.0 {
-            return true;
+/// Shares of 1 in proportion to positive counts but for those that would be above the ceiling, which are at it.
+fn shares(counts: &[f64], ceiling: f64) -> Vec<f64> {
+    let mut sorted = counts.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (mut rest, mut total) = (1.0, counts.iter().sum::<f64>());
+    // One is never at the ceiling, since all together have room for more than 1.
+    for largest in sorted.iter().skip(1).rev() {
+        if largest * rest <= ceiling * total {
+            break;
         }
-        let ceiling = total * ceiling_share;
-        let mut trimmed = 0.0;
-        for count in counts.iter_mut().filter(|count| **count > ceiling) {
-            trimmed += *count - ceiling;
-            *count = ceiling;
-        }
-        if trimmed <= TOLERANCE * all {
-            return false;
-        }
+        rest -= ceiling;
+        total -= largest;
     }
-    false
+    counts.iter().map(|count| (count * rest / total).min(ceiling)).collect()
 }
 
 impl AdjustedCurve {

@@ -428,24 +428,52 @@ fn compressed_gradients_fill_the_display() {
     }
 }
 
-/// Histogram adjustment is monotone, never shows more contrast than the world, and shows a world of little contrast as it is.
+/// Histogram adjustment is monotone, never shows more contrast than the world, and uses the display's range where the world has more:
+/// of a ramp with most of it in the dark, of narrow peaks with most of the pixels, and of a flat picture with two lights.
 #[test]
 fn histogram_adjustment_exaggerates_nothing() {
-    let operator = Operator::Histogram(HistogramAdjustment::default());
-    let image = Image::from_fn(256, 64, |x, y| {
-        [10_f32.powf((x as f32 / 256.0).powi(3) * 5.0 + 0.001 * (y % 2) as f32); 3]
-    });
-    let shown = mapped(&image, operator, 0.0);
-    let world = image.rgb_pixels().expect("colour");
-    let black = 0.01; // of the display, which adds to all that it shows
-    for x in 0..255 {
-        let seen = (shown[x + 1][1] + black) / (shown[x][1] + black);
-        let there = world[x + 1][1] / world[x][1];
-        assert!(seen >= 0.9999, "at {x}");
-        // The ceiling leaves 2.5 % of the counts above it.
-        assert!(seen.ln() <= 1.1 * there.ln() + 0.01, "at {x}: {seen} of {there}");
+    // Decades of luminance of pixel number t in [0, 1).
+    let peak = |at: f32, width: f32, share: f32, t: f32| {
+        if t < share { at + width * (t / share - 0.5) } else { 5.0 * (t - share) / (1.0 - share) }
+    };
+    let pictures: [&dyn Fn(f32) -> f32; 7] = [
+        &|t| 5.0 * t.powi(3),
+        &|t| peak(2.0, 0.02, 0.97, t),
+        &|t| peak(4.99, 0.01, 0.97, t),
+        &|t| peak(0.2, 0.3, 0.8, t),
+        &|t| if t < 0.5 { 0.01 * t } else { 5.0 + 0.01 * t },
+        &|t| if t < 0.999 { 0.0 } else { 4000.0 * (t - 0.999) },
+        &|t| 1.5 * t,
+    ];
+    for (index, picture) in pictures.into_iter().enumerate() {
+        let (width, n) = (120, 120 * 120);
+        let image =
+            Image::from_fn(width, width, |x, y| [10_f32.powf(picture((y * width + x) as f32 / n as f32)); 3]);
+        for contrast in [1.5_f32, 30.0, 100.0, 1000.0] {
+            let operator = HistogramAdjustment { contrast, ..HistogramAdjustment::default() };
+            let shown = mapped(&image, Operator::Histogram(operator), 0.0);
+            let world = image.rgb_pixels().expect("colour");
+            // The display adds its black to all that it shows.
+            let seen = |i: usize| (shown[i][1] * (1.0 - 1.0 / contrast) + 1.0 / contrast).ln();
+            let mut order: Vec<usize> = (0..n).collect();
+            order.sort_by(|a, b| world[*a][1].total_cmp(&world[*b][1]));
+            for step in [1, n / 100, n / 4] {
+                for pair in order.windows(step + 1) {
+                    let (a, b) = (pair[0], pair[step]);
+                    let there = (world[b][1] / world[a][1]).ln();
+                    let seen = seen(b) - seen(a);
+                    // Rounding of shares of the display's range.
+                    assert!(
+                        seen > -1e-5 && seen <= 1.0001 * there + 1e-4,
+                        "picture {index}, contrast {contrast}: {seen} of {there}"
+                    );
+                }
+            }
+            let range = |values: &dyn Fn(usize) -> f32| values(order[n - 1]) - values(order[0]);
+            let (seen, there) = (range(&seen), range(&|i| world[i][1].ln()));
+            assert!(there < contrast.ln() || seen > 0.97 * contrast.ln(), "picture {index}: {seen}");
+        }
     }
-    assert!(shown[0][1] < 0.02 && shown[255][1] > 0.9, "{} {}", shown[0][1], shown[255][1]);
 }
 
 #[test]
