@@ -307,6 +307,31 @@ fn z_test() {
     assert!([nothing.rms, nothing.share_beyond, nothing.z_mean, nothing.p_mean].iter().all(|v| v.is_nan()));
 }
 
+/// A plane of zeros estimates no variance; a zero beside other values does: that of a pixel whose samples are equal.
+#[test]
+fn z_test_without_variance() {
+    let with = |values: Vec<f32>, variances: Vec<f32>| {
+        let mut image = Image::gray(2, 2, values);
+        image.set_channel(VARIANCE, variances);
+        image
+    };
+    let noisy = with(vec![1.0, 2.0, 0.0, 4.0], vec![0.25, 0.25, 0.0, 0.25]);
+    for none in [0.0, f32::NAN, f32::INFINITY] {
+        let one_sample = with(vec![1.5, 2.0, 0.0, 3.0], vec![none; 4]);
+        for [a, b] in [[&noisy, &one_sample], [&one_sample, &noisy]] {
+            let test = ZTest::new(a, b).expect("same size").expect("variance");
+            assert_eq!([test.n_tested, test.n_untested], [0, 2]);
+            assert!([test.rms, test.share_beyond, test.z_mean, test.p_mean].iter().all(|v| v.is_nan()));
+            assert_eq!(test.z, [0.0; 4]);
+        }
+    }
+    // Of the pixels that are black in one, that which is not in the other is tested by the variance there.
+    let dark = with(vec![1.0, 0.0, 0.0, 4.0], vec![0.25, 0.0, 0.0, 0.25]);
+    let test = ZTest::new(&noisy, &dark).expect("same size").expect("variance");
+    assert_eq!([test.n_tested, test.n_untested], [3, 0]);
+    assert_eq!(test.z, [0.0, 4.0, 0.0, 0.0]);
+}
+
 /// Views have the pixels of both.
 #[test]
 fn views() {

@@ -4,6 +4,10 @@
 //! estimate the same value from many samples: its root mean square is 1, and 0.27 % of the pixels lie beyond 3. Few samples give
 //! heavier tails, since variances are estimates too. The sum over all pixels shows a bias that no single pixel does:
 //! `z_mean = sum (a - b) / sqrt(sum (v_a + v_b))`.
+//!
+//! A plane of variances without a positive one is no estimate, as after one sample per pixel, and nothing is tested. Beside others a variance
+//! of 0 says that all samples were equal: such a pixel is tested by the variance of the other picture, for left out it would be chosen
+//! by its value (a pixel that no light has reached yet), and bias `z_mean`.
 
 use super::CompareError;
 use crate::Image;
@@ -18,7 +22,7 @@ pub const BEYOND: f64 = 3.0;
 /// What the test found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ZTest {
-    /// Pixels with a variance, those that are tested.
+    /// Pixels with a variance in either picture, those that are tested; none where one picture has variances of 0 alone.
     pub n_tested: usize,
     /// Pixels that differ but are not tested, since there is no variance.
     pub n_untested: usize,
@@ -50,6 +54,8 @@ impl ZTest {
         let (Some(a), Some(b)) = (luminances(test), luminances(reference)) else {
             return Err(CompareError::NoColor);
         };
+        let is_estimate = |v: &f32| *v > 0.0 && v.is_finite();
+        let have_estimates = [va, vb].iter().all(|plane| plane.values.iter().any(is_estimate));
         let [rms, share_beyond, z_mean, p_mean] = [f64::NAN; 4];
         let mut result =
             ZTest { n_tested: 0, n_untested: 0, rms, share_beyond, z_mean, p_mean, z: Vec::new() };
@@ -57,7 +63,7 @@ impl ZTest {
         for ((a, b), (va, vb)) in a.into_iter().zip(b).zip(va.values.iter().zip(&vb.values)) {
             let v = f64::from(*va) + f64::from(*vb);
             let z = (a - b) / v.sqrt();
-            let is_tested = v > 0.0 && v.is_finite() && z.is_finite();
+            let is_tested = have_estimates && v > 0.0 && v.is_finite() && z.is_finite();
             result.z.push(if is_tested { z as f32 } else { 0.0 });
             if is_tested {
                 result.n_tested += 1;
