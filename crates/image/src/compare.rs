@@ -259,13 +259,13 @@ impl Pair {
     }
 
     /// Mean structural similarity of both images as a display shows them: exposed, clipped to [0, 1] and encoded as sRGB. Masked
-    /// pixels are black in both.
+    /// pixels are black in both where they are neighbours, and not in the mean.
     pub fn ssim(&self, exposure_ev: f32) -> f64 {
         let (test, reference) = (shown(&self.test, exposure_ev), shown(&self.reference, exposure_ev));
         let plane = |pixels: &[[f32; 3]], c: usize| -> Vec<f32> {
             pixels.iter().map(|pixel| srgb_encode(pixel[c])).collect()
         };
-        let channel = |c| ssim::mean(&plane(&test, c), &plane(&reference, c), self.width);
+        let channel = |c| ssim::mean(&plane(&test, c), &plane(&reference, c), &self.is_counted, self.width);
         (channel(0) + channel(1) + channel(2)) / 3.0
     }
 
@@ -275,7 +275,7 @@ impl Pair {
         self.masked(flip::error_map(&test, &reference, [self.width, self.height], pixels_per_degree))
     }
 
-    /// HDR-FLIP's error of every pixel, 0 where masked.
+    /// HDR-FLIP's error of every pixel, 0 where masked; NaN where the reference is black, of which no exposure shows anything.
     pub fn hdr_flip_map(&self, pixels_per_degree: f32) -> Vec<f32> {
         let size = [self.width, self.height];
         self.masked(hdr_flip::error_map(&self.test, &self.reference, size, pixels_per_degree))

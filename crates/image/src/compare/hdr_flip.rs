@@ -34,7 +34,7 @@ pub fn exposures(reference: &[[f32; 3]]) -> Vec<f64> {
     (0..n).map(|i| start + (stop - start) * i as f64 / (n - 1) as f64).collect()
 }
 
-/// Error in [0, 1] of each pixel of two pictures in linear RGB.
+/// Error in [0, 1] of each pixel of two pictures in linear RGB; NaN where there is no exposure.
 ///
 /// # Panics
 /// When the lengths are not `width * height` or `pixels_per_degree` is not positive.
@@ -45,8 +45,12 @@ pub fn error_map(
     size: [usize; 2],
     pixels_per_degree: f32,
 ) -> Vec<f32> {
+    let exposures = exposures(reference);
+    if exposures.is_empty() {
+        return vec![f32::NAN; reference.len()];
+    }
     let mut largest = vec![0.0f32; reference.len()];
-    for stops in exposures(reference) {
+    for stops in exposures {
         let (test, reference) = (shown(test, stops), shown(reference, stops));
         let map = flip::error_map(&test, &reference, size, pixels_per_degree);
         largest.iter_mut().zip(map).for_each(|(largest, error)| *largest = largest.max(error));

@@ -7,7 +7,7 @@
 //! SSIM = (2 m_a m_b + C1) (2 s_ab + C2) / ((m_a^2 + m_b^2 + C1) (s_a^2 + s_b^2 + C2)),   C1 = 0.01^2, C2 = 0.03^2
 //! ```
 //!
-//! of values in [0, 1] as a display gets them. The mean is over the pixels whose window lies in the picture.
+//! of values in [0, 1] as a display gets them. The mean is over the pixels that count and whose window lies in the picture.
 
 use rayon::prelude::*;
 
@@ -21,8 +21,9 @@ const RADIUS: usize = 5;
 const C1: f64 = 0.01 * 0.01;
 const C2: f64 = 0.03 * 0.03;
 
-/// Mean similarity of two planes of `width` values in a row. Where no window lies in the picture, borders are repeated.
-pub(super) fn mean(test: &[f32], reference: &[f32], width: usize) -> f64 {
+/// Mean similarity of two planes of `width` values in a row, NaN where no pixel counts. Where no window lies in the picture, borders
+/// are repeated.
+pub(super) fn mean(test: &[f32], reference: &[f32], is_counted: &[bool], width: usize) -> f64 {
     let height = test.len() / width;
     let gaussian = |k: usize| {
         let x = k as f64 - RADIUS as f64;
@@ -44,9 +45,13 @@ pub(super) fn mean(test: &[f32], reference: &[f32], width: usize) -> f64 {
     };
     let margin = if width.min(height) > 2 * RADIUS { RADIUS } else { 0 };
     let rows = margin..height - margin;
-    let sums: Vec<f64> = rows
+    let sums: Vec<(f64, usize)> = rows
         .into_par_iter()
-        .map(|y| (margin..width - margin).map(|x| similarity(y * width + x)).sum())
+        .map(|y| {
+            let pixels = (margin..width - margin).map(|x| y * width + x).filter(|index| is_counted[*index]);
+            pixels.fold((0.0, 0), |(sum, n), index| (sum + similarity(index), n + 1))
+        })
         .collect();
-    sums.iter().sum::<f64>() / ((width - 2 * margin) * (height - 2 * margin)) as f64
+    let (sum, n) = sums.into_iter().fold((0.0, 0), |(sum, n), row| (sum + row.0, n + row.1));
+    sum / n as f64
 }

@@ -71,7 +71,8 @@ fn non_finite_pixels_are_masked() {
     assert_eq!((result.mse, result.flip, result.mean_ratio), (0.0, 0.0, 1.0));
     let nothing =
         compare(&constant([f32::NAN; 3]), &constant([1.0; 3]), &Settings::default()).expect("same size");
-    assert!(nothing.mse.is_nan() && nothing.flip.is_nan());
+    let numbers = [nothing.mse, nothing.relmse_trimmed, nothing.psnr_db, nothing.ssim, nothing.flip];
+    assert!(numbers.iter().chain([&nothing.mean_ratio, &nothing.smape]).all(|v| v.is_nan()), "{nothing:?}");
 }
 
 /// Clipping both images hides differences beyond the bounds.
@@ -234,8 +235,24 @@ fn exposures_of_odd_references() {
     assert!((100..200).contains(&n), "{n}");
     let one = hdr_flip::exposures(&[[1.0; 3]; 4]);
     assert_eq!(one.len(), 2);
-    let pair = Pair::new(&constant([0.0; 3]), &constant([0.0; 3]), None).expect("same size");
-    assert_eq!(pair.mean_of_map(&pair.hdr_flip_map(flip::PIXELS_PER_DEGREE)), 0.0);
+    // Nothing is measured against a reference that is black, or where all is masked.
+    for [test, reference] in [[1.0, 0.0], [0.0, 0.0], [1.0, f32::NAN]] {
+        let pair = Pair::new(&constant([test; 3]), &constant([reference; 3]), None).expect("same size");
+        assert!(pair.mean_of_map(&pair.hdr_flip_map(flip::PIXELS_PER_DEGREE)).is_nan());
+    }
+}
+
+/// Pixels that are left out do not make pictures alike: half of a picture masked, the other of similarity s, has s and not (1 + s) / 2.
+#[test]
+fn similarity_leaves_masked_pixels_out() {
+    let field =
+        |value: f32, masked: f32| Image::from_fn(60, 40, |x, _| [if x < 30 { value } else { masked }; 3]);
+    let [bright, dark] = [srgb_decode(0.8), srgb_decode(0.4)];
+    let pair = Pair::new(&field(bright, f32::NAN), &field(dark, 0.5), None).expect("same size");
+    // Of flat fields: (2 a b + C1) / (a^2 + b^2 + C1). Windows of six columns of thirty reach over the masked half.
+    let flat = (2.0 * 0.8 * 0.4 + 1e-4) / (0.64 + 0.16 + 1e-4);
+    let found = pair.ssim(0.0);
+    assert!((found - flat).abs() < 0.05, "{found} instead of {flat}");
 }
 
 /// scikit-image 0.26 and NumPy on the same two pictures: `structural_similarity` with `gaussian_weights`, `sigma` 1.5 and without
