@@ -9,6 +9,7 @@ use etendue::io::images::{ExrSettings, read_image};
 
 use crate::args::{DenoiseArguments, DenoiserArgument};
 use crate::failure::{Failure, Result};
+use crate::threads::with_threads;
 use crate::{oidn, outputs, report};
 
 /// Metadata that tells what was done to a picture.
@@ -16,12 +17,7 @@ const DENOISED: &str = "etendue.denoised";
 
 /// Runs the command.
 pub(crate) fn run(arguments: &DenoiseArguments) -> Result<()> {
-    let threads = arguments.threads.map_or(0, |n| n as usize);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|error| Failure::Running(format!("cannot start threads: {error}")))?;
-    pool.install(|| run_in_pool(arguments))
+    with_threads(arguments.threads, || run_in_pool(arguments))
 }
 
 fn run_in_pool(arguments: &DenoiseArguments) -> Result<()> {

@@ -148,7 +148,7 @@ fn convert(arguments: &ImageConvertArguments) -> Result<()> {
             path.display()
         )));
     }
-    let settings = outputs::exr_settings(arguments.exr);
+    let settings = outputs::exr_settings(arguments.exr, &arguments.outputs);
     if arguments.exr.half {
         warn_of_overflow(&image);
     }

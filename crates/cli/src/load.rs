@@ -129,6 +129,9 @@ pub(crate) fn integrator_entity(text: &str) -> Result<Entity> {
             Some(specs) => typed_value(name, key, value, specs)?,
             None => guessed_value(value),
         };
+        if entity.parameters.iter().any(|parameter| parameter.name == key) {
+            return Err(Failure::Usage(format!("--integrator: {key} is given twice")));
+        }
         entity.parameters.push(Parameter::new(key, value));
     }
     find_files_from_here(&mut entity)?;
@@ -221,7 +224,7 @@ mod tests {
     /// Slips on the command line are refused, not guessed at.
     #[test]
     fn wrong_parameters_are_refused() {
-        for text in ["path:maxdepth", "path:maxdepth=three", "path:maxdeep=3"] {
+        for text in ["path:maxdepth", "path:maxdepth=three", "path:maxdeep=3", "path:maxdepth=3,maxdepth=4"] {
             assert!(integrator_entity(text).is_err(), "{text}");
         }
     }

@@ -31,6 +31,7 @@ mod report;
 mod scene;
 mod stats;
 mod study;
+mod threads;
 mod tonemap;
 
 use std::process::ExitCode;

@@ -10,7 +10,7 @@ use etendue::io::images::{
 
 use crate::args::ExrArguments;
 use crate::failure::{Failure, Result};
-use crate::primaries;
+use crate::{primaries, report};
 
 /// Extensions of the formats that are written.
 const FORMATS: [&str; 5] = ["exr", "png", "ppm", "pfm", "hdr"];
@@ -71,8 +71,11 @@ pub(crate) fn check_distinct<'p>(paths: impl Iterator<Item = &'p PathBuf>) -> Re
     Ok(())
 }
 
-/// How .exr files are written, by the options.
-pub(crate) fn exr_settings(arguments: ExrArguments) -> ExrSettings {
+/// How .exr files are written, by the options; says where there are none.
+pub(crate) fn exr_settings(arguments: ExrArguments, paths: &[PathBuf]) -> ExrSettings {
+    if (arguments.half || arguments.tiles) && !paths.iter().any(|path| extension(path) == "exr") {
+        report::warning("--half and --tiles have no effect: they are for .exr files");
+    }
     ExrSettings {
         numbers: if arguments.half { ExrNumbers::Half } else { ExrNumbers::Float },
         blocks: if arguments.tiles { ExrBlocks::Tiles } else { ExrBlocks::Rows },

@@ -12,6 +12,7 @@ use etendue::transport::photon::mapping::{Content, MapFile};
 use crate::args::{PhotonKindArgument, PhotonMapArgument, PhotonsArguments};
 use crate::failure::{Failure, Result};
 use crate::load::{self, Overrides};
+use crate::threads::with_threads;
 use crate::{list, outputs, photon_file, report};
 
 /// What is written besides pictures.
@@ -19,6 +20,10 @@ const FORMATS: [&str; 4] = ["ply", "svg", "csv", photon_file::EXTENSION];
 
 /// Runs the command.
 pub(crate) fn run(arguments: &PhotonsArguments) -> Result<()> {
+    with_threads(arguments.threads, || run_in_pool(arguments))
+}
+
+fn run_in_pool(arguments: &PhotonsArguments) -> Result<()> {
     check_outputs(arguments)?;
     let normal = arguments.normal.map(|[x, y, z]| Vector3::new(x, y, z));
     let normal = match normal.map(Vector3::try_normalized) {
@@ -42,7 +47,7 @@ pub(crate) fn run(arguments: &PhotonsArguments) -> Result<()> {
     let mut cloud = PhotonCloud::trace(&scene, arguments.photons, kind, arguments.seed);
     report::note(&format!("{} photons emitted, {} on surfaces", cloud.n_emitted, cloud.photons.len()));
     if cloud.photons.is_empty() {
-        report::warning("no photon of that kind lies on a surface: pictures are black");
+        report::warning("no photon of that kind lies on a surface: there is nothing to show");
     }
     let Some([x, y, z]) = arguments.at else {
         return write_all(arguments, &scene, &cloud, None);

@@ -14,6 +14,7 @@ use crate::failure::{Failure, Result};
 use crate::load::{LoadedScene, Overrides, fingerprint, integrator_entity, load};
 use crate::progress::{CheckpointPlan, ShowProgress, Watch, catch_interruption, is_interrupted};
 use crate::stats::{RenderClock, RenderTime, Statistics};
+use crate::threads::with_threads;
 use crate::{denoise, metadata, outputs, preview, report, stats};
 
 /// A render, as meant: what to do, where the results go.
@@ -30,12 +31,7 @@ struct Job {
 /// Runs the command.
 pub(crate) fn run(arguments: &RenderArguments) -> Result<()> {
     let started = Instant::now();
-    let threads = arguments.threads.map_or(0, |n| n as usize);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|error| Failure::Running(format!("cannot start threads: {error}")))?;
-    pool.install(|| run_in_pool(arguments, started))
+    with_threads(arguments.threads, || run_in_pool(arguments, started))
 }
 
 fn run_in_pool(arguments: &RenderArguments, started: Instant) -> Result<()> {
@@ -210,11 +206,11 @@ fn write_outputs(arguments: &RenderArguments, job: &Job) -> Result<()> {
     if let Some(wish) = arguments.preview {
         preview::show_radiance(&image, wish);
     }
-    outputs::write_precious(&job.outputs, &image, outputs::exr_settings(arguments.exr))?;
+    let paths: Vec<PathBuf> = job.outputs.iter().chain(&arguments.denoise).cloned().collect();
+    let exr = outputs::exr_settings(arguments.exr, &paths);
+    outputs::write_precious(&job.outputs, &image, exr)?;
     match &arguments.denoise {
-        Some(path) => {
-            denoise::after_render(&image, path, outputs::exr_settings(arguments.exr), arguments.quiet)
-        }
+        Some(path) => denoise::after_render(&image, path, exr, arguments.quiet),
         None => Ok(()),
     }
 }

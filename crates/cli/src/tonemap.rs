@@ -50,6 +50,7 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
         Operator::Display(_) => Exposure::Automatic,
         _ => Exposure::Stops(0.0),
     });
+    warn_of_what_is_unused(arguments, exposure);
     let stops = match exposure {
         Exposure::Stops(stops) => stops,
         Exposure::Automatic => {
@@ -75,7 +76,9 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
     let display = match arguments.encoding {
         EncodingArgument::Srgb => None,
         EncodingArgument::P3 => Some(DisplayPng::P3(dither)),
-        EncodingArgument::Pq => Some(DisplayPng::Pq { white_luminance: arguments.white_luminance }),
+        EncodingArgument::Pq => {
+            Some(DisplayPng::Pq { white_luminance: arguments.white_luminance.unwrap_or(WHITE_LUMINANCE) })
+        }
     };
     outputs::write_all(&arguments.outputs, |path| match (outputs::extension(path).as_str(), display) {
         ("png", Some(display)) => write_display_png(path, &mapped, display),
@@ -85,8 +88,25 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
     })
 }
 
+/// Luminance of white in cd/m^2 [ITU-R BT.2408].
+const WHITE_LUMINANCE: f32 = 203.0;
+
 /// What automatic exposure gives the log-average luminance.
 const MIDDLE_GREY: f32 = 0.18;
+
+/// Options that this operator or encoding has no use for.
+fn warn_of_what_is_unused(arguments: &TonemapArguments, exposure: Exposure) {
+    let has_key = matches!(arguments.operator, Operator::Reinhard(_) | Operator::ReinhardLocal(_));
+    if arguments.key.is_some() && !has_key && exposure != Exposure::Automatic {
+        report::warning("--key has no effect: it is for reinhard, reinhard-local and --exposure auto");
+    }
+    if arguments.white.is_some() && !matches!(arguments.operator, Operator::Reinhard(_)) {
+        report::warning("--white has no effect: it is for reinhard");
+    }
+    if arguments.white_luminance.is_some() && arguments.encoding != EncodingArgument::Pq {
+        report::warning("--white-luminance has no effect: it is for --encoding pq");
+    }
+}
 
 /// The operator, with the parameters that have options of their own.
 fn with_options(arguments: &TonemapArguments) -> Operator {

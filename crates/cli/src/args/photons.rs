@@ -44,6 +44,9 @@ pub(crate) struct PhotonsArguments {
     /// Random seed
     #[arg(long, value_name = "N", default_value = "0", allow_negative_numbers = true)]
     pub(crate) seed: u64,
+    /// Number of threads [default: all cores]; it changes no photon
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..1024), allow_negative_numbers = true)]
+    pub(crate) threads: Option<u64>,
     /// Resolution in place of the film's
     #[arg(long, value_name = "WxH", value_parser = parse_resolution, allow_hyphen_values = true)]
     pub(crate) resolution: Option<[i32; 2]>,

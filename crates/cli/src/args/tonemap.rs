@@ -41,9 +41,9 @@ pub(crate) struct TonemapArguments {
     /// Colours and transfer curve of .png outputs
     #[arg(long, value_enum, default_value = "srgb", conflicts_with = "cmyk")]
     pub(crate) encoding: EncodingArgument,
-    /// Luminance in cd/m² that white has with --encoding pq
-    #[arg(long, value_name = "CD/M2", default_value = "203", value_parser = parse_peak, allow_negative_numbers = true)]
-    pub(crate) white_luminance: f32,
+    /// Luminance in cd/m² that white has with --encoding pq [default: 203]
+    #[arg(long, value_name = "CD/M2", value_parser = parse_peak, allow_negative_numbers = true)]
+    pub(crate) white_luminance: Option<f32>,
     /// Show the picture in the terminal, if standard output is one that can; or name the protocol
     #[arg(long, value_enum, value_name = "PROTOCOL", num_args = 0..=1, require_equals = true, default_missing_value = "auto")]
     pub(crate) preview: Option<PreviewArgument>,
@@ -92,7 +92,13 @@ fn parse_operator(text: &str) -> Result<Operator, String> {
         let value: f32 = value.parse().map_err(|_| format!("'{value}' is not a number"))?;
         Ok((key, value))
     });
-    Operator::named(name, &pairs.collect::<Result<Vec<_>, String>>()?)
+    let pairs = pairs.collect::<Result<Vec<_>, String>>()?;
+    if let Some((key, _)) =
+        pairs.iter().enumerate().find_map(|(i, pair)| pairs[..i].iter().find(|other| other.0 == pair.0))
+    {
+        return Err(format!("{key} is given twice"));
+    }
+    Operator::named(name, &pairs)
 }
 
 fn parse_exposure(text: &str) -> Result<Exposure, String> {

@@ -389,3 +389,70 @@ fn broken_pictures() {
     folder.run("image info depth.exr").expect(0);
     assert_eq!(folder.files(), before);
 }
+
+/// Whoever reads a picture believes the primaries that it states, and formats that state none have those of sRGB.
+#[test]
+fn primaries() {
+    let folder = Folder::with_scene(&format!("ColorSpace \"rec2020\"\n{ROOM}"));
+    folder.run("render scene.pbrt -q --spp 4 -o a.exr -o a.png -o a.pfm").expect(0);
+    folder.run("tonemap a.exr -o b.png").expect(0);
+    folder.run("image convert a.exr -o c.png -o c.pfm").expect(0);
+    assert_eq!(folder.read("a.png"), folder.read("b.png"));
+    assert_eq!(folder.read("a.png"), folder.read("c.png"));
+    assert_eq!(folder.read("a.pfm"), folder.read("c.pfm"));
+    let json = folder.run("compare a.exr a.pfm --json").expect(0).json();
+    assert!(json["mse"].as_f64().is_some_and(|mse| mse < 1e-10), "{json}");
+    // The colours themselves are others.
+    let raw = |name: &str| folder.image(name).rgb_pixels().expect("colour");
+    assert!(raw("a.exr") != raw("a.pfm"));
+
+    let mut green = Image::rgb(1, 1, vec![[0.0, 1.0, 0.0]]);
+    let rec2020 = "0.708 0.292 0.17 0.797 0.131 0.046 0.3127 0.329";
+    green.metadata.insert("chromaticities".to_owned(), rec2020.to_owned());
+    write_image(folder.path("green.exr"), &green).expect("written");
+    let json = folder.run("falsecolor green.exr -o green.png --json").expect(0).json();
+    assert!(json["mean"].as_f64().is_some_and(|mean| (mean - 0.678).abs() < 1e-3), "{json}");
+
+    // Wider displays are shown what sRGB cannot, and read back as that.
+    folder.run("tonemap a.exr -o p3.png --encoding p3").expect(0);
+    folder.run("tonemap a.exr -o pq.png --encoding pq").expect(0);
+    for name in ["p3.png", "pq.png"] {
+        let json = folder.run(&format!("compare {name} a.exr --clamp 1 --json")).expect(0).json();
+        assert!(json["mse"].as_f64().is_some_and(|mse| mse < 1e-4), "{name}: {json}");
+    }
+}
+
+/// Layers that are no light have no candela, and no colour for formats that hold nothing else.
+#[test]
+fn layers_of_features() {
+    let folder = Folder::with_scene(ROOM);
+    folder.render("a", "--spp 2 --features");
+    folder.run("image convert a.exr -o albedo.exr --layer Albedo").expect(0);
+    let metadata = folder.image("albedo.exr").metadata;
+    assert!(
+        !metadata.contains_key("whiteLuminance") && !metadata.contains_key("etendue.unit"),
+        "{metadata:?}"
+    );
+    folder.run("falsecolor albedo.exr -o f.png").expect(0).says("does not tell the unit");
+    folder
+        .run("image convert a.exr -o depth.exr -o depth.png --layer depth")
+        .expect(2)
+        .says("the channels of layer depth are no colour");
+    assert!(!folder.path("depth.exr").exists());
+}
+
+/// Options that come to nothing are told.
+#[test]
+fn unused_options() {
+    let folder = Folder::new();
+    write_image(folder.path("a.exr"), &ramp()).expect("written");
+    let says = |arguments: &str, text: &str| {
+        folder.run(&format!("tonemap a.exr -o a.png {arguments}")).expect(0).says(text);
+    };
+    says("--key 0.3", "--key has no effect");
+    says("--white 3", "--white has no effect");
+    says("--white-luminance 100", "--white-luminance has no effect");
+    folder.run("image convert a.exr -o a.png --half").expect(0).says("--half and --tiles have no effect");
+    folder.run("tonemap a.exr -o a.png --operator reinhard:key=1,key=2").expect(2).says("given twice");
+    folder.run("compare a.exr a.exr --scale-reference 0").expect(2).says("a positive number");
+}

@@ -63,15 +63,17 @@ impl MapFile {
     /// # Errors
     /// If the method makes others.
     pub fn trace(scene: &Scene, content: Content) -> Result<Self, String> {
-        let plans = plans(scene, &scene.integrator).unwrap_or_else(|| {
+        let own = plans(scene, &scene.integrator);
+        let method = if own.is_some() { method_name(&scene.integrator.type_name) } else { "photonmap" };
+        let plans = own.unwrap_or_else(|| {
             let settings = MappingSettings::default();
             vec![settings.global_plan(scene), settings.caustic_plan(scene)]
         });
         let Some(plan) = plans.iter().find(|plan| plan.content == content) else {
             let names: Vec<&str> = plans.iter().map(|plan| plan.content.name()).collect();
-            let method = method_name(&scene.integrator.type_name);
+            let help = if content == Content::Scattered { "; photons:show=shadowrays asks one" } else { "" };
             return Err(format!(
-                "as set, \"{method}\" asks no map \"{}\": {}",
+                "as set, \"{method}\" asks no map \"{}\": {}{help}",
                 content.name(),
                 names.join(", ")
             ));
