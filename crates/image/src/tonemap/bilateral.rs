@@ -10,7 +10,7 @@ use crate::plane::Plane;
 /// Parameters of the bilateral operator.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Bilateral {
-    /// Ratio of the brightest to the darkest base that the display shows.
+    /// Ratio of the brightest to the darkest base that the display shows, above 1.
     pub contrast: f32,
     /// Standard deviation in space, as a share of the longer side of the picture.
     pub space: f32,

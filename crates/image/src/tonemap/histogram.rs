@@ -11,7 +11,7 @@ use crate::plane::Plane;
 /// Parameters of histogram adjustment.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct HistogramAdjustment {
-    /// Ratio of the display's white to its black.
+    /// Ratio of the display's white to its black, above 1.
     pub contrast: f32,
     /// Cells across the picture that count as one glance: the paper has one for each degree of view.
     pub glances: u32,

@@ -55,7 +55,7 @@ pub const OPERATORS: &[OperatorSpec] = &[
         name: "bilateral",
         doc: "compressed base, kept detail; Durand and Dorsey 2002",
         parameters: &[
-            ["contrast", "50", "ratio of the brightest to the darkest base that is shown"],
+            ["contrast", "50", "ratio of the brightest to the darkest base that is shown, above 1"],
             ["space", "0.02", "reach of the filter as a share of the longer side"],
             ["range", "0.4", "reach of the filter in decades of luminance"],
         ],
@@ -73,7 +73,7 @@ pub const OPERATORS: &[OperatorSpec] = &[
         name: "histogram",
         doc: "histogram adjustment of Larson et al. 1997",
         parameters: &[
-            ["contrast", "100", "ratio of the display's white to its black"],
+            ["contrast", "100", "ratio of the display's white to its black, above 1"],
             ["glances", "60", "degrees of view across the picture"],
         ],
     },
@@ -105,10 +105,10 @@ impl Operator {
                 };
                 return Err(format!("'{name}' has no parameter '{parameter}'; {known}"));
             }
-            let most = operator.largest(parameter);
-            if !(*value > 0.0 && *value <= most) {
+            let (bound, most) = (operator.lower_bound(parameter), operator.largest(parameter));
+            if !(*value > bound && *value <= most) {
                 return Err(format!(
-                    "'{parameter}' of '{name}' must be above 0 and at most {most}, not {value}"
+                    "'{parameter}' of '{name}' must be above {bound} and at most {most}, not {value}"
                 ));
             }
             operator.set(parameter, *value);
@@ -130,6 +130,14 @@ impl Operator {
             "aces" => Self::Display(DisplayCurve::Aces),
             "agx" => Self::Display(DisplayCurve::Agx),
             _ => Self::Clamp,
+        }
+    }
+
+    /// What a parameter must be above: a display without contrast shows nothing.
+    fn lower_bound(self, parameter: &str) -> f32 {
+        match (self, parameter) {
+            (Self::Bilateral(_) | Self::Histogram(_), "contrast") => 1.0,
+            _ => 0.0,
         }
     }
 
@@ -162,7 +170,7 @@ impl Operator {
             (Self::Gradient(o), "threshold") => o.threshold = value,
             (Self::Gradient(o), "exponent") => o.exponent = value,
             (Self::Gradient(o), "saturation") => o.saturation = value,
-            (Self::Histogram(o), "contrast") => o.contrast = value.max(1.01),
+            (Self::Histogram(o), "contrast") => o.contrast = value,
             (Self::Histogram(o), "glances") => o.glances = (value as u32).max(1),
             _ => {}
         }
@@ -198,6 +206,13 @@ mod tests {
             }
             let error = Operator::named(spec.name, &[("kye", 1.0)]).expect_err("no parameter is called so");
             assert!(error.contains("kye"), "{error}");
+        }
+        for name in ["bilateral", "histogram"] {
+            for contrast in [0.5, 1.0] {
+                let error = Operator::named(name, &[("contrast", contrast)]).expect_err("no contrast");
+                assert!(error.contains("above 1 and"), "{error}");
+            }
+            assert!(Operator::named(name, &[("contrast", 1.1)]).is_ok());
         }
         assert!(Operator::named("rheinhard", &[]).expect_err("no such").contains("reinhard-local"));
     }
