@@ -25,6 +25,8 @@ pub enum ExposureError {
     Time(usize),
     /// All have the same time, which tells nothing of the camera.
     SameTimes,
+    /// All pixels of all exposures are black or white, which tells nothing of radiance.
+    Clipped,
 }
 
 impl fmt::Display for ExposureError {
@@ -34,6 +36,9 @@ impl fmt::Display for ExposureError {
             Self::Size(index) => write!(f, "picture {} has another size than the first", index + 1),
             Self::Time(index) => write!(f, "the time of exposure {} is not a positive number", index + 1),
             Self::SameTimes => write!(f, "all exposures have the same time"),
+            Self::Clipped => {
+                write!(f, "no pixel of any exposure is between black and white: expose longer or shorter")
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::ExposureError;
-use super::response::{Response, hat, level};
+use super::response::{N_LEVELS, Response, hat, level};
 
 /// A picture and how long it was exposed.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +14,7 @@ pub struct Exposure<'a> {
     pub seconds: f32,
 }
 
-/// Demands two exposures at least, of one size and positive times.
+/// Demands two exposures at least, of one size and positive times, and a value that is not clipped.
 pub(super) fn check(exposures: &[Exposure<'_>]) -> Result<(), ExposureError> {
     let Some((first, others)) = exposures.split_first() else { return Err(ExposureError::TooFew) };
     if others.is_empty() {
@@ -28,7 +28,12 @@ pub(super) fn check(exposures: &[Exposure<'_>]) -> Result<(), ExposureError> {
             return Err(ExposureError::Time(index));
         }
     }
-    Ok(())
+    let is_exposed = |value: &f32| (1..N_LEVELS - 1).contains(&level(*value));
+    if exposures.iter().any(|exposure| exposure.pixels.iter().flatten().any(is_exposed)) {
+        Ok(())
+    } else {
+        Err(ExposureError::Clipped)
+    }
 }
 
 /// Linear values in proportion to radiance: per channel the mean of what the exposures say, weighted by a hat over their levels
@@ -36,7 +41,7 @@ pub(super) fn check(exposures: &[Exposure<'_>]) -> Result<(), ExposureError> {
 /// black.
 ///
 /// # Errors
-/// If there are fewer than two exposures, of different sizes, or with times that are not positive.
+/// If there are fewer than two exposures, of different sizes, with times that are not positive, or if all pixels are black or white.
 pub fn merge(exposures: &[Exposure<'_>], response: &Response) -> Result<Vec<[f32; 3]>, ExposureError> {
     check(exposures)?;
     let n = exposures[0].pixels.len();

@@ -42,7 +42,7 @@ impl Response {
     /// `smoothness` times the second differences of g (Debevec and Malik (3)).
     ///
     /// # Errors
-    /// If there are fewer than two exposures, or all of one time.
+    /// If there are fewer than two exposures, all of one time, or if all pixels are black or white.
     pub fn recover(exposures: &[Exposure<'_>], smoothness: f32) -> Result<Self, ExposureError> {
         super::merge::check(exposures)?;
         let times: Vec<f64> = exposures.iter().map(|exposure| f64::from(exposure.seconds).ln()).collect();

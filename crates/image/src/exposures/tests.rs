@@ -69,15 +69,24 @@ fn exposures_that_cannot_be_combined() {
     assert_eq!(Response::recover(&same, 20.0), Err(ExposureError::SameTimes));
     assert_eq!(fuse(&[&one], 2, Fusion::default()), Err(ExposureError::TooFew));
     assert_eq!(fuse(&[&one, &other], 2, Fusion::default()), Err(ExposureError::Size(1)));
-    // Clipped everywhere: black and white are finite.
-    let (black, white) = (vec![[0.0; 3]; 4], vec![[1.0; 3]; 4]);
-    for pixels in [&black, &white] {
-        let merged = merge(&[exposure(pixels, 1.0), exposure(pixels, 2.0)], &response).expect("exposures");
-        assert!(merged.iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "{merged:?}");
+    // Black and white tell nothing, of the camera nor of light.
+    let clipped = [vec![[0.0; 3]; 4], vec![[1.0; 3]; 4], vec![[0.001; 3]; 4]];
+    for pixels in &clipped {
+        for other in &clipped {
+            let two = [exposure(pixels, 1.0), exposure(other, 2.0)];
+            assert_eq!(merge(&two, &response), Err(ExposureError::Clipped));
+            assert_eq!(Response::recover(&two, 20.0), Err(ExposureError::Clipped));
+        }
     }
-    let few = [exposure(&black, 1.0), exposure(&white, 2.0)];
-    let response = Response::recover(&few, 20.0).expect("a curve");
-    assert!((0..256).all(|z| response.ln_exposure(0, z).is_finite()));
+    // Where some do, pixels that are clipped in all are finite, and what is white is brighter.
+    let (short, long) =
+        (vec![[0.0; 3], [0.5; 3], [1.0; 3], [0.1; 3]], vec![[0.0; 3], [0.7; 3], [1.0; 3], [0.2; 3]]);
+    let two = [exposure(&short, 1.0), exposure(&long, 2.0)];
+    let merged = merge(&two, &response).expect("exposures");
+    assert!(merged.iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "{merged:?}");
+    assert!(merged[0][1] < merged[3][1] && merged[1][1] < merged[2][1], "{merged:?}");
+    let recovered = Response::recover(&two, 20.0).expect("a curve");
+    assert!((0..256).all(|z| recovered.ln_exposure(0, z).is_finite()));
 }
 
 /// Equal pictures fuse to themselves; of two, each gives what it shows well.
