@@ -2,7 +2,7 @@
 
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
-use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER};
+use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER, read_sharp_alpha};
 use crate::path::camera_pass::WavelengthMode;
 use crate::path_tracing::PathSettings;
 
@@ -73,7 +73,7 @@ impl LightSettings {
         let max_depth = p.count_within("maxdepth", default.max_depth, 0, MAX_DEPTH);
         let n_paths = p.count_within("lightpaths", 0, 0, MAX_PATHS);
         let mirrors = p.bool("mirrors", default.mirrors);
-        let sharp_alpha = p.float("sharpalpha", default.sharp_alpha);
+        let sharp_alpha = read_sharp_alpha(p);
         let wavelengths = p.choice("wavelengths", "hero", WavelengthMode::CHOICES);
         // Read where the scene is built; lights send paths by their power.
         p.ignore("lightsampler");

@@ -3,7 +3,7 @@
 use etendue_scene::document::{Entity, Value};
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
-use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER};
+use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER, read_sharp_alpha};
 use crate::path::adaptive::AdaptivePixels;
 use crate::path::camera_pass::WavelengthMode;
 
@@ -161,7 +161,7 @@ impl PathSettings {
         let light_samples = p.count("lightsamples", splitting).max(1);
         let reuse = p.count_within("reuse", default.reuse, 1, MAX_REUSE);
         let regularize = p.bool("regularize", false);
-        let sharp_alpha = p.float("sharpalpha", default.sharp_alpha);
+        let sharp_alpha = read_sharp_alpha(p);
         let strategies = [
             ("both", LightStrategy::Both),
             ("lights", LightStrategy::Lights),

@@ -11,15 +11,16 @@ use etendue_scene::parameters::{ParameterSpec, Parameters};
 use etendue_scene::{Film, Scene};
 
 use super::estimate::DensityEstimate;
+use super::lack::Lack;
 use super::mapping::{
     Content, EyeMethod, EyePass, LIGHT_SAMPLER, LitMap, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS,
-    MapNames, MapPlan, Probe, SHARP_ALPHA_SPEC, Seen, describe_map, file, length, n_parameters, obtain, spec,
-    with_shared,
+    MapNames, MapPlan, Probe, SHARP_ALPHA_SPEC, Seen, check_least_photons, describe_map, file, length,
+    n_parameters, obtain, spec, with_shared,
 };
 use super::settings::WalkLimits;
 use super::{PhotonSettings, Target};
 use crate::integrator::{Control, Integrator, PassEnd, Passes, ReportEntry};
-use crate::lpe::{PathExpressions, SHARP_ALPHA};
+use crate::lpe::{PathExpressions, SHARP_ALPHA, read_sharp_alpha};
 use crate::path::camera_pass::{CameraPass, WavelengthMode};
 
 /// What is shown.
@@ -115,7 +116,7 @@ impl DirectViewSettings {
         // Read where the scene is built.
         p.ignore("lightsampler");
         let shows = [("all", Show::All), ("shadowrays", Show::ShadowRays), ("caustics", Show::Caustics)];
-        Self {
+        let settings = Self {
             n_photons: p.count_within("photons", default.n_photons, 0, MOST_PHOTONS),
             k: p.count_within("nearest", default.k, 1, MOST_NEIGHBOURS),
             max_radius: length(p, "radius"),
@@ -123,10 +124,24 @@ impl DirectViewSettings {
             show: p.choice("show", "all", &shows),
             max_depth: p.count("maxdepth", default.max_depth),
             max_photon_depth: p.count("maxphotondepth", default.max_photon_depth),
-            sharp_alpha: p.float("sharpalpha", default.sharp_alpha),
+            sharp_alpha: read_sharp_alpha(p),
             photons: PhotonSettings::from_parameters(p),
             estimate: DensityEstimate::from_parameters(p),
             wavelengths: p.choice("wavelengths", "hero", WavelengthMode::CHOICES),
+        };
+        let (estimate, k) = (&settings.estimate, settings.k);
+        check_least_photons(p, estimate, "nearest", k, "photons show nothing");
+        settings
+    }
+
+    /// What users are told of an empty map.
+    fn advice(&self, lack: Lack) -> Option<&'static str> {
+        match (lack, self.show) {
+            (Lack::Unasked, _) => Some("\"photons\" is 0: what they would show is left out"),
+            (Lack::Astray | Lack::Unkept, Show::Caustics) => Some(
+                "no photon came through mirrors or glass to a surface that keeps it: there are no caustics",
+            ),
+            _ => lack.advice(),
         }
     }
 
@@ -163,7 +178,7 @@ impl DirectViewSettings {
 pub struct DirectView {
     settings: DirectViewSettings,
     expressions: PathExpressions,
-    map: Option<(LitMap, Probe)>,
+    map: Option<(LitMap, Probe, Option<Lack>)>,
     /// Memory of the last pass's tiles, for the next.
     tiles: Vec<TileSamples>,
 }
@@ -185,13 +200,13 @@ impl Integrator for DirectView {
         let settings = &self.settings;
         if self.map.is_none() {
             let plan = settings.plan(scene);
-            self.map = obtain(scene, &plan, control).map(|(traced, _)| {
+            self.map = obtain(scene, &plan, control).map(|(traced, lack)| {
                 let map = LitMap::new(scene, &plan, traced.map);
                 let probe = Probe::new(scene, &map, settings.sharp_alpha);
-                (map, probe)
+                (map, probe, lack)
             });
         }
-        let Some((map, _)) = &self.map else { return PassEnd::Cancelled };
+        let Some((map, ..)) = &self.map else { return PassEnd::Cancelled };
         let camera_pass = CameraPass {
             wavelengths: settings.wavelengths,
             expressions: &self.expressions,
@@ -218,18 +233,15 @@ impl Integrator for DirectView {
     }
 
     fn report(&self) -> Vec<ReportEntry> {
-        let Some((map, probe)) = &self.map else { return Vec::new() };
+        let Some((map, probe, lack)) = &self.map else { return Vec::new() };
         let mut entries = describe_map(&NAMES, map, probe);
         if map.map.is_empty() {
-            let advice = match self.settings.show {
-                Show::Caustics => {
-                    "no photon came through mirrors or glass to a surface that keeps it: there are no caustics"
-                }
-                _ => {
-                    "no photon met a surface that keeps it; check that lights send photons to where the scene is"
-                }
-            };
-            entries.push(ReportEntry::new("empty_map", 1.0, "").with_advice(advice));
+            let empty = ReportEntry::new("empty_map", 1.0, "");
+            let advice = lack.and_then(|lack| self.settings.advice(lack));
+            entries.push(match advice {
+                Some(advice) => empty.with_advice(advice),
+                None => empty,
+            });
         }
         entries
     }

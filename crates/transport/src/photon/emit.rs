@@ -11,14 +11,19 @@ mod evenness;
 use std::collections::HashMap;
 
 use etendue_geometry::GeometryId;
-use etendue_math::{AliasTable, Normal3, Point2, Ray, Rng, Sampler, offset_ray_origin};
+use etendue_math::{
+    AliasTable, Normal3, Point2, Ray, Rng, Sampler, SamplerKind, SamplerSettings, offset_ray_origin,
+};
 use etendue_scene::Scene;
-use etendue_scene::light::{AreaLight, EmittedRay, Light, LightContext, LightId, MovingAreaLight};
+use etendue_scene::light::{
+    AreaLight, Directions, EmittedRay, Light, LightContext, LightId, MovingAreaLight,
+};
 use etendue_scene::medium::MediumId;
 use etendue_spectrum::{Sampled, Wavelengths};
 use rayon::prelude::*;
 
 use crate::lpe::SHARP_ALPHA;
+use crate::path::camera_pass::Tracer;
 use crate::path::medium::{medium_along, most_frequent};
 use aim::{Aim, Aimed, Targets};
 use evenness::Evenness;
@@ -63,6 +68,10 @@ impl Default for EmissionSettings {
     }
 }
 
+/// Photons whose first rays tell how many meet a shape, and the share of them from which on they need not be aimed.
+const N_TRIALS: u32 = 2048;
+const ENOUGH_HITS: f64 = 0.1;
+
 /// The most lights that have maps and tables of their own, those of the most power: each costs some ten milliseconds.
 const MAX_PREPARED: usize = 128;
 
@@ -76,6 +85,7 @@ pub struct PhotonEmitter {
     /// By light, what it stands in; empty if there are no media.
     media: Vec<Option<MediumId>>,
     sent_share: f64,
+    is_dark: bool,
 }
 
 /// How a light sends photons.
@@ -120,7 +130,9 @@ impl PhotonEmitter {
         let n_cells = aim::affordable_side(settings.n_cells.clamp(2, 1024) as usize, by_power.len());
         let prepare = |index: &usize| {
             let light = &scene.lights[*index];
-            (*index, Source::new(light, &context, targets.as_ref(), n_cells, settings.scheme))
+            let others = targets_but_itself(scene, light, settings.target);
+            let targets = others.as_ref().or(targets.as_ref());
+            (*index, Source::new(light, &context, targets, n_cells, settings.scheme))
         };
         let prepared: Vec<_> = by_power.par_iter().map(prepare).collect();
         let mut sources = vec![None; powers.len()];
@@ -138,12 +150,43 @@ impl PhotonEmitter {
             sources,
             media: start_media(scene),
             sent_share: if all > 0.0 && largest > 0.0 { of_sent / all } else { 0.0 },
+            is_dark: by_power.is_empty(),
         }
     }
 
-    /// True if there is no light to send photons.
+    /// Photons for all that light meets: sent wherever lights shine or, where less than a tenth of those would meet any shape
+    /// (a lamp far from a small scene), aimed at shapes, unless the settings have no projection maps.
+    #[must_use]
+    pub fn reaching(scene: &Scene, settings: &EmissionSettings) -> Self {
+        let plain = Self::aimed(scene, &EmissionSettings { target: Target::Anything, ..*settings });
+        if settings.n_cells == 0 || plain.is_idle() || plain.hit_share(scene) >= ENOUGH_HITS {
+            return plain;
+        }
+        Self::aimed(scene, &EmissionSettings { target: Target::Shapes, ..*settings })
+    }
+
+    /// About the share of its photons that meet a shape; always the same for the same scene.
+    #[must_use]
+    pub fn hit_share(&self, scene: &Scene) -> f64 {
+        let (tracer, lambda) = (Tracer::new(scene), Wavelengths::sample_uniform(0.5));
+        let settings = SamplerSettings { kind: SamplerKind::Independent, seed: 0x417, samples_per_pixel: 1 };
+        let meets = |index: &u32| {
+            let mut numbers = Sampler::new(&settings, [0, 0], u64::from(*index));
+            let photon = self.emit(scene, &mut numbers, &lambda);
+            photon.is_some_and(|photon| tracer.intersect(&photon.ray).is_some())
+        };
+        (0..N_TRIALS).filter(meets).count() as f64 / f64::from(N_TRIALS)
+    }
+
+    /// True if no light sends anything.
     #[must_use]
     pub const fn is_dark(&self) -> bool {
+        self.is_dark
+    }
+
+    /// True if no photon is sent: there is no light, or none that could meet what photons are aimed at.
+    #[must_use]
+    pub const fn is_idle(&self) -> bool {
         self.lights.is_none()
     }
 
@@ -268,6 +311,17 @@ fn targets(scene: &Scene, settings: &EmissionSettings) -> Option<Targets> {
         Target::Shapes => Some(Targets::new(scene, &|_| true)),
         Target::SharpShapes => Some(Targets::new(scene, &is_sharp)),
     }
+}
+
+/// All shapes but the light's own, if that is one that cannot shine on itself: a flat one or a ball, and one light. Its own would be
+/// in the way of maps: it is in all directions.
+fn targets_but_itself(scene: &Scene, light: &Light, target: Target) -> Option<Targets> {
+    let Light::Area(lamp) = light else { return None };
+    let is_convex = !matches!(light.directions(&scene.light_context()), Directions::Varied);
+    let is_of_shape = |other: &&Light| matches!(other, Light::Area(other) if other.geometry == lamp.geometry);
+    let is_whole = || scene.lights.iter().filter(is_of_shape).nth(1).is_none();
+    (target == Target::Shapes && is_convex && is_whole())
+        .then(|| Targets::new(scene, &|id| id != lamp.geometry))
 }
 
 /// Power of a light by the weight of sampling; of one at infinity, that through the box around the scene.

@@ -8,6 +8,7 @@
 pub mod direct_view;
 pub mod emit;
 pub mod estimate;
+mod lack;
 pub mod map;
 pub mod mapping;
 pub mod pattern;

@@ -2,7 +2,7 @@
 
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
-use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER};
+use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER, read_sharp_alpha};
 use crate::path::camera_pass::WavelengthMode;
 
 /// The largest depth: each level may double the rays.
@@ -79,7 +79,7 @@ impl WhittedSettings {
         Self {
             max_depth: p.count_within("maxdepth", default.max_depth, 0, MAX_DEPTH),
             place: p.choice("shadowrays", "random", &places),
-            sharp_alpha: p.float("sharpalpha", default.sharp_alpha),
+            sharp_alpha: read_sharp_alpha(p),
             wavelengths: p.choice("wavelengths", "hero", WavelengthMode::CHOICES),
         }
     }

@@ -326,6 +326,145 @@ fn a_light_within_glass_is_all_caustic() {
     }
 }
 
+/// A floor and a wall of 4 m by 4 m, a kilometre below a lamp that sends a millionth of its light there: nothing is lost. Bias by
+/// the rims of what is seen and by the corner is below 3 %.
+#[test]
+fn light_from_afar_is_not_lost() {
+    let world = format!(
+        "LightSource \"point\" \"point3 from\" [0 1000 -300] {} Material \"diffuse\" {}
+        Shape \"bilinearmesh\" \"point3 P\" [-2 0 -2  2 0 -2  -2 0 2  2 0 2]
+        Shape \"bilinearmesh\" \"point3 P\" [-2 0 2  2 0 2  -2 4 2  2 4 2]",
+        lit("I", 1e6),
+        flat("reflectance", 0.5)
+    );
+    let camera = "LookAt 0 1 -3  0 0.5 0  0 1 0 Camera \"perspective\" \"float fov\" 45";
+    let scene = |integrator| {
+        let mut scene = Setup { size: [16, 16], camera, world: &world, ..Setup::default() }.scene("afar");
+        scene.integrator = integrator;
+        scene
+    };
+    let paths = luminance(&run(&scene(entity("path", &[("maxdepth", 20)])), 256).0);
+    let methods = [
+        entity("photonmap", &[("globalphotons", 50_000)]),
+        entity("photons", &[("photons", 100_000), ("nearest", 50)]),
+        entity("sppm", &[("maxdepth", 20)]),
+    ];
+    for method in methods {
+        let (film, report) = run(&scene(method.clone()), 16);
+        let difference: Moments = luminance(&film).iter().zip(&paths).map(|(a, b)| a - b).collect();
+        let tolerance = 0.03 * mean(&paths) + 5.0 * difference.standard_error();
+        assert!(
+            difference.mean().abs() < tolerance && tolerance < 0.06 * mean(&paths),
+            "{}: {} instead of {} (tolerance {tolerance}) {report:?}",
+            method.type_name,
+            mean(&luminance(&film)),
+            mean(&paths)
+        );
+    }
+}
+
+/// The words to the user.
+fn advice(scene: &Scene) -> Vec<String> {
+    run(scene, 1).1.into_iter().filter_map(|entry| entry.advice).collect()
+}
+
+/// Each cause has its own word, and where nothing is wrong there is none.
+#[test]
+fn advice_names_the_cause() {
+    let floor = "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 2  1 -1 2  -1 1 2  1 1 2]";
+    let lamp = |power: f64| format!("LightSource \"point\" {} ", lit("I", power));
+    let [lit_floor, unlit, none] = [lamp(1.0) + floor, lamp(0.0) + floor, floor.to_owned()];
+    let away = format!(
+        "LightSource \"spot\" \"point3 from\" [0 0 9] \"point3 to\" [0 0 99] {} {floor}",
+        lit("I", 1.0)
+    );
+    let mirror = format!("{} Material \"conductor\" {floor}", lamp(1.0));
+    let room = room();
+    let float = |name: &str, parameter: &str, value: f32| {
+        Entity::new(name).with(parameter, Value::Floats(vec![value]))
+    };
+    let show = |what: &str| Entity::new("photons").with("show", Value::Strings(vec![what.to_owned()]));
+    let few = |entity: Entity| entity.with("globalphotons", Value::Integers(vec![20_000]));
+    let cases = [
+        (&unlit, entity("photonmap", &[]), "no light sends photons"),
+        (&none, entity("photons", &[]), "no light sends photons"),
+        (&none, entity("sppm", &[]), "no light sends photons"),
+        (&unlit, entity("ppm", &[]), "no light sends photons"),
+        (&away, entity("photonmap", &[]), "shine past the scene"),
+        (&away, entity("photons", &[]), "shine past the scene"),
+        (&away, entity("sppm", &[]), "shine past the scene"),
+        (&lit_floor, entity("photonmap", &[("globalphotons", 0)]), "\"globalphotons\" is 0: indirect"),
+        (&lit_floor, float("photonmap", "photonmemory", 0.0), "\"photonmemory\" holds no photons"),
+        (&lit_floor, entity("photons", &[("photons", 0)]), "\"photons\" is 0"),
+        (&lit_floor, show("caustics"), "there are no caustics"),
+        // Nothing is missing.
+        (&mirror, entity("photonmap", &[]), ""),
+        (&mirror, entity("photons", &[]), ""),
+        (&lit_floor, entity("photonmap", &[]), ""),
+        (&lit_floor, show("shadowrays"), ""),
+        (&lit_floor, entity("sppm", &[]), ""),
+        // Radii that are given, and those that are not.
+        (&lit_floor, float("sppm", "radius", 1e-20), ""),
+        (&room, float("sppm", "radius", 1e-20), "within \"radius\""),
+        (&room, float("sppm", "radius", 1e-25), "within \"radius\""),
+        (&room, few(float("photonmap", "globalradius", 1e-3)), "or a larger \"globalradius\""),
+        (&room, few(float("photonmap", "causticradius", 1e-4)), "within \"causticradius\""),
+        (&room, few(entity("photonmap", &[])), ""),
+        (&room, entity("photons", &[("photons", 20_000)]), ""),
+    ];
+    for (world, integrator, expected) in cases {
+        let mut scene = Setup { camera: CAMERA, world, ..Setup::default() }.scene("advice");
+        scene.integrator = integrator;
+        let said = advice(&scene);
+        let n_expected = usize::from(!expected.is_empty());
+        assert!(
+            said.len() == n_expected && said.iter().all(|word| word.contains(expected)),
+            "{:?} expects {expected:?}: {said:?}",
+            scene.integrator
+        );
+    }
+}
+
+/// Where emission ends long before as many photons were stored as were wanted, a word is said.
+#[test]
+fn few_photons_of_many_wanted() {
+    // A lamp in a ball of mirrors but for a speck, which keeps one photon in thousands.
+    let world = format!(
+        "LightSource \"point\" {} AttributeBegin ReverseOrientation Material \"conductor\" \"spectrum reflectance\" [360 0.1 830 0.1]
+        Shape \"sphere\" \"float radius\" 3 AttributeEnd
+        Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-0.04 -0.04 2  0.04 -0.04 2  -0.04 0.04 2  0.04 0.04 2]",
+        lit("I", 1.0)
+    );
+    let mut scene = Setup { world: &world, ..Setup::default() }.scene("few");
+    for (method, parameter) in [("photonmap", "globalphotons"), ("photons", "photons")] {
+        scene.integrator = entity(method, &[(parameter, 10_000)]);
+        let said = advice(&scene);
+        assert!(said.len() == 1 && said[0].contains("of the 10000 photons wanted"), "{said:?}");
+    }
+}
+
+/// Numbers that leave nothing to be seen, or that mean nothing, are reported where they stand.
+#[test]
+fn senseless_numbers_are_reported() {
+    let warns = |entity: Entity, text: &str| {
+        let (_, problems) = method(&entity, PathExpressions::default());
+        let said: Vec<&str> = problems.list().iter().map(|problem| problem.message.as_str()).collect();
+        assert!(
+            !problems.has_errors() && said.iter().any(|said| said.contains(text)),
+            "{entity:?}: {said:?}"
+        );
+    };
+    warns(entity("photonmap", &[("minphotons", 60)]), "indirect light is left out");
+    warns(entity("photonmap", &[("minphotons", 100)]), "caustics are left out");
+    warns(entity("photons", &[("minphotons", 60), ("nearest", 50)]), "\"nearest\" 50");
+    for name in ["photonmap", "photons", "sppm", "ppm", "light", "path", "whitted"] {
+        for (value, taken) in [(-1.0, "0 is taken"), (1.5, "1 is taken")] {
+            warns(Entity::new(name).with("sharpalpha", Value::Floats(vec![value])), taken);
+        }
+    }
+    warns(Entity::new("sppm").with("receiveralpha", Value::Floats(vec![-1.0])), "0 is taken");
+}
+
 /// LPE-4: layers by path expression are filled from the trails of photons, and agree with the terms.
 #[test]
 fn expressions_follow_trails() {

@@ -144,6 +144,86 @@ fn aiming_at_all_shapes_leaves_out_what_misses() {
     }
 }
 
+/// A square floor of 16 square metres under a light of that intensity towards it at a height in metres.
+fn far_light(name: &str, height: f64) -> (Scene, f64) {
+    let lamp = |shape: &str| {
+        format!(
+            "Translate 0 {height} 0 Rotate 90 1 0 0 AreaLightSource \"diffuse\" {} {shape}",
+            lit("L", 5.0)
+        )
+    };
+    let (light, intensity) = match name {
+        "point" => (format!("LightSource \"point\" \"point3 from\" [0 {height} 0] {}", lit("I", 3.0)), 3.0),
+        "spot" => (
+            format!(
+                "LightSource \"spot\" \"point3 from\" [0 {height} 0] \"point3 to\" [0 0 0] \"float coneangle\" 25 {}",
+                lit("I", 3.0)
+            ),
+            3.0,
+        ),
+        "sphere" => (lamp("Shape \"sphere\" \"float radius\" 0.5"), 5.0 * std::f64::consts::PI * 0.25),
+        _ => (lamp("Shape \"disk\" \"float radius\" 0.5"), 5.0 * std::f64::consts::PI * 0.25),
+    };
+    let world = format!(
+        "AttributeBegin {light} AttributeEnd
+        Material \"diffuse\" {} Shape \"bilinearmesh\" \"point3 P\" [-2 0 -2  2 0 -2  -2 0 2  2 0 2]",
+        flat("reflectance", 0.5)
+    );
+    (Setup { world: &world, ..Setup::default() }.scene(name), intensity)
+}
+
+/// Of what far lights send nearly nothing meets a small scene. Photons that are to reach it do, a good part of them, and bring its
+/// illuminance, by the inverse square of the distance.
+#[test]
+fn photons_of_far_lights_are_aimed() {
+    let n = 20_000;
+    for name in ["point", "spot", "sphere", "disk"] {
+        for height in [300.0, 1000.0, 1e5] {
+            let (scene, intensity) = far_light(name, height);
+            let settings = EmissionSettings::default();
+            let emitter = PhotonEmitter::reaching(&scene, &settings);
+            assert!(PhotonEmitter::new(&scene).hit_share(&scene) < 0.01, "{name} {height}");
+            assert!(emitter.hit_share(&scene) > 0.1, "{name} {height}: {}", emitter.hit_share(&scene));
+            let walk = PhotonWalk { sampler: scene.sampler, ..PhotonWalk::default() };
+            let (found, _) = trace_photons(&scene, &emitter, 0..n, &walk, |_, vertex, found| {
+                found.push(lumens(vertex));
+                Onward::Stop
+            });
+            let misses = std::iter::repeat_n(0.0, n as usize - found.len());
+            let values: Moments = found.iter().copied().chain(misses).collect();
+            // The chance of a hit is at least 1/10: five standard errors are 5 * sqrt(9 / n).
+            expect_mean(name, &values, intensity * 16.0 / (height * height), 0.11);
+            let without = PhotonEmitter::reaching(&scene, &EmissionSettings { n_cells: 0, ..settings });
+            assert_eq!(without.sent_share(), 1.0, "without projection maps");
+        }
+    }
+}
+
+/// Where a tenth of the photons meets something they leave as they do, bit for bit.
+#[test]
+fn photons_that_arrive_are_not_aimed() {
+    let mut n_plain = 0;
+    for (name, light) in lights() {
+        let scene = still_life(name, &light);
+        let (plain, settings) = (PhotonEmitter::new(&scene), EmissionSettings::default());
+        let reaching = PhotonEmitter::reaching(&scene, &settings);
+        if plain.hit_share(&scene) < 0.1 {
+            continue;
+        }
+        n_plain += 1;
+        let walk = PhotonWalk { sampler: scene.sampler, ..PhotonWalk::default() };
+        for index in 0..50 {
+            let ray = |emitter: &PhotonEmitter| {
+                let lambda = walk.wavelengths.sample(0.3);
+                let photon = emitter.emit(&scene, &mut walk.numbers(index), &lambda)?;
+                Some((photon.ray.origin, photon.ray.direction, photon.flux))
+            };
+            assert_eq!(ray(&plain), ray(&reaching), "{name}");
+        }
+    }
+    assert!(n_plain >= 10, "{n_plain}");
+}
+
 /// Patterns change how evenly photons fall, not how many; even ones vary less in what arrives through one quarter of the floor.
 #[test]
 fn patterns_agree_and_even_ones_vary_less() {

@@ -12,6 +12,8 @@
 //! active cell, then a direction in it. (b) and (c) are the same density, and here by choice. (a) is biased where the number of
 //! photons is no multiple of that of the cells, and not offered: the stratified pattern over (c) spreads photons as evenly.
 
+use std::f32::consts::FRAC_1_PI;
+
 use etendue_geometry::BoundingSphere;
 use etendue_math::{Bounds2, Bounds3, Frame, PiecewiseConstant2, Point2, Point3, Ray, Rng, Vector3, warp};
 use etendue_scene::Scene;
@@ -56,6 +58,13 @@ const N_LOOKS: usize = 4;
 /// From which share of active cells on a map does not pay.
 const USELESS_SHARE: f64 = 0.95;
 
+/// With fewer active cells a map tells little of where its targets are, and is made anew for the cone that holds them. That is at
+/// least so wide: directions of `f32` are some 1e-7 apart.
+const FEW_CELLS: usize = 64;
+const LEAST_ANGLE: f32 = 2e-6;
+/// Cones wider than this, in radians, are not.
+const WIDEST_ANGLE: f32 = 0.5;
+
 /// Most balls for lights at infinity, which look at each of them for each photon.
 const MAX_DISCS: usize = 64;
 
@@ -77,6 +86,24 @@ impl Targets {
     pub(super) fn new(scene: &Scene, wanted: &dyn Fn(etendue_geometry::GeometryId) -> bool) -> Self {
         let cover = |n| scene.geometry.covering_spheres(n, wanted);
         Self { spheres: cover(256), few_spheres: cover(MAX_DISCS / 2) }
+    }
+
+    /// The chart of a narrow cone that holds all directions from within a ball to them.
+    fn cone_from(&self, place: BoundingSphere) -> Option<Chart> {
+        let corner = |ball: &BoundingSphere, sign: f32| ball.centre + Vector3::splat(sign * ball.radius);
+        let first = self.spheres.first()?;
+        let bounds = Bounds3 { min: corner(first, -1.0), max: corner(first, 1.0) };
+        let bounds = self.spheres.iter().fold(bounds, |bounds, ball| Bounds3 {
+            min: bounds.min.min(corner(ball, -1.0)),
+            max: bounds.max.max(corner(ball, 1.0)),
+        });
+        let middle = bounds.min + (bounds.max - bounds.min) * 0.5;
+        let reach = |ball: &BoundingSphere| (ball.centre - middle).length() + ball.radius;
+        let radius = self.spheres.iter().map(reach).fold(0.0, f32::max);
+        let way = middle - place.centre;
+        let sine = (radius + place.radius + rounding(place.centre, middle)) / way.length();
+        let angle = (sine < WIDEST_ANGLE.sin()).then(|| sine.asin())?;
+        Some(Chart::cone(way.try_normalized()?, (1.001 * angle).max(LEAST_ANGLE)))
     }
 
     /// True if there are none.
@@ -129,9 +156,17 @@ impl Aim {
         let Some(bounds) = light.bounds(context) else { return Aimed::Everywhere };
         let Some(place) = ball_around(bounds.bounds) else { return Aimed::Everywhere };
         let chart = Chart::of(light.directions(context));
-        let chart_used = chart.unwrap_or(Chart::SPHERE);
-        let map = DirectionMap::new(light, context, chart_used, place, targets, n, scheme);
-        let Some(map) = map else { return Aimed::Everywhere };
+        let map = |view| DirectionMap::new(light, context, view, place, targets, n, scheme);
+        let Some(mut map_found) = map(View::Whole(chart.unwrap_or(Chart::SPHERE))) else {
+            return Aimed::Everywhere;
+        };
+        if chart.is_some()
+            && (1..FEW_CELLS).contains(&map_found.n_active)
+            && let Some(closer) = targets.cone_from(place).and_then(|chart| map(View::Part(chart)))
+        {
+            map_found = closer;
+        }
+        let map = map_found;
         match map.share {
             share if share <= 0.0 => Aimed::Nowhere,
             share if share >= USELESS_SHARE => Aimed::Everywhere,
@@ -182,10 +217,20 @@ pub(super) struct DirectionMap {
     active: PiecewiseConstant2,
     /// Flux of all cells, to draw from until one is active.
     all: Option<PiecewiseConstant2>,
+    n_active: usize,
     /// Share of the flux in active cells.
     share: f64,
     /// Share of the photons that leave by the light's own density.
     defence: f32,
+}
+
+/// The directions that a map is of.
+#[derive(Clone, Copy)]
+enum View {
+    /// All that the light has.
+    Whole(Chart),
+    /// Some of them.
+    Part(Chart),
 }
 
 /// A cone of directions, ready for comparison.
@@ -215,10 +260,14 @@ impl Cone {
     }
 }
 
+/// What rays from one point to another may miss it by.
+fn rounding(from: Point3, to: Point3) -> f32 {
+    1e-5 * (from.as_vector().abs().max_element() + to.as_vector().abs().max_element())
+}
+
 /// Directions in which a ray from within the first ball may meet the second.
 fn cone_between(from: BoundingSphere, to: BoundingSphere) -> Cone {
-    let rounding =
-        1e-5 * (from.centre.as_vector().abs().max_element() + to.centre.as_vector().abs().max_element());
+    let rounding = rounding(from.centre, to.centre);
     let widened = BoundingSphere { radius: to.radius + from.radius + rounding, ..to };
     let (axis, cos) = widened.cone_from(from.centre);
     Cone::of_cosine(axis, cos)
@@ -229,17 +278,18 @@ impl DirectionMap {
     fn new(
         light: &Light,
         context: &LightContext,
-        chart: Chart,
+        view: View,
         place: BoundingSphere,
         targets: &Targets,
         n: usize,
         scheme: MapScheme,
     ) -> Option<Self> {
+        let (View::Whole(chart) | View::Part(chart)) = view;
         let n = n.next_multiple_of(2).max(2);
         let width = n * chart.n_squares();
         let targets: Vec<Cone> = targets.spheres.iter().map(|target| cone_between(place, *target)).collect();
         let flux: Vec<f32> =
-            (0..width * n).map(|i| cell_flux(light, context, &chart, [i % width, i / width], n)).collect();
+            (0..width * n).map(|i| cell_flux(light, context, view, [i % width, i / width], n)).collect();
         let sum = |cells: &[f32]| cells.iter().map(|cell| f64::from(*cell)).sum::<f64>();
         let found = sum(&flux);
         if !(found > 0.0 && found.is_finite()) {
@@ -265,12 +315,19 @@ impl DirectionMap {
                 if is_missed || is_pictured { flux[i].max(floor) } else { flux[i] }
             })
             .collect();
-        let share = (sum(&active) / found).min(1.0);
+        let whole = match view {
+            View::Whole(_) => found,
+            // The mean over the chart is the probability of its directions.
+            View::Part(_) => flux.len() as f64,
+        };
+        let share = (sum(&active) / whole).min(1.0);
         let domain = Bounds2::new(Point2::splat(0.0), Point2::new(chart.n_squares() as f32, 1.0));
         let table = |cells: &[f32]| PiecewiseConstant2::new(cells, width, n, domain);
         let defence = if is_uncertain { DEFENCE } else { 0.0 };
         let retries = scheme == MapScheme::Retry && share >= LEAST_RETRY_SHARE && defence == 0.0;
-        Some(Self { chart, active: table(&active), all: retries.then(|| table(&flux)), share, defence })
+        let n_active = active.iter().filter(|flux| **flux > 0.0).count();
+        let all = retries.then(|| table(&flux));
+        Some(Self { chart, active: table(&active), all, n_active, share, defence })
     }
 
     /// True if the direction lies in an active cell.
@@ -330,17 +387,16 @@ const fn is_pictured(light: &Light) -> bool {
     matches!(light, Light::Goniometric(_) | Light::Ies(_) | Light::Projection(_))
 }
 
-/// About the share of a light's flux that leaves through a cell.
-fn cell_flux(
-    light: &Light,
-    context: &LightContext,
-    chart: &Chart,
-    [column, row]: [usize; 2],
-    n: usize,
-) -> f32 {
+/// Flux that leaves through a cell, in units of its own for each light; of a part of its directions the greatest density over that
+/// of the chart.
+fn cell_flux(light: &Light, context: &LightContext, view: View, [column, row]: [usize; 2], n: usize) -> f32 {
+    let (View::Whole(chart) | View::Part(chart)) = view;
     let is_even = matches!(light.directions(context), Directions::Sphere | Directions::Varied);
     if is_even && !is_pictured(light) {
-        return 1.0;
+        return match view {
+            View::Whole(_) => 1.0,
+            View::Part(chart) => 0.25 * FRAC_1_PI / chart.density(Vector3::new(0.0, 0.0, 1.0)),
+        };
     }
     let at = |i: usize, cell: usize| (cell as f32 + (i as f32 + 0.5) / N_LOOKS as f32) / n as f32;
     let looks = (0..N_LOOKS * N_LOOKS).map(|i| {

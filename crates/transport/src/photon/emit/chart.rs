@@ -56,6 +56,13 @@ impl Chart {
         has_other_half: true,
     };
 
+    /// The directions within an angle of an axis, at most a right one.
+    pub(super) fn cone(axis: Vector3, angle: f32) -> Self {
+        let sine = (0.5 * angle).sin();
+        let projection = Projection::EqualArea { k: 2.0 * sine * sine };
+        Self { frame: Frame::from_z(axis), projection, has_other_half: false }
+    }
+
     /// Unit squares, side by side along x.
     pub(super) const fn n_squares(&self) -> usize {
         if self.has_other_half { 2 } else { 1 }
@@ -152,7 +159,9 @@ mod tests {
             Directions::Cosine { axis, cos_max: 0.5, two_sided: true },
         ]
         .map(|directions| Chart::of(directions).expect("they do not depend on the place"))
-        .to_vec()
+        .into_iter()
+        .chain([Chart::cone(axis, 0.4)])
+        .collect()
     }
 
     /// Places and directions belong to each other, and areas of the chart are shares of the sphere by the stated density.

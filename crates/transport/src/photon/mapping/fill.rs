@@ -59,7 +59,7 @@ pub(crate) fn trace_map(
     let most = plan.n_photons.saturating_mul(plan.content.most_emitted()).max(LEAST_EMITTED);
     // Of photons that branch few are enough to tell how many are kept.
     let first = if plan.walk.absorption == Absorption::Branch { 1 << 11 } else { 1 << 20 };
-    let is_vain = plan.n_photons == 0 || emitter.is_dark();
+    let is_vain = plan.n_photons == 0 || emitter.is_idle();
     let mut next = if is_vain { 0 } else { (plan.n_photons / 4).max(LEAST_EMITTED).min(first) };
     while next > 0 {
         let range = n_emitted..n_emitted + next;

@@ -35,6 +35,21 @@ pub(crate) struct LitMap {
     pub(crate) map: PhotonMap,
     /// How it is asked.
     pub(crate) estimate: MapEstimate,
+    /// What there is to say of it.
+    pub(crate) asked: Asked,
+}
+
+/// What was asked of a map.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Asked {
+    /// Photons to be stored; 0 if the map is from a file.
+    pub(crate) n_photons: u64,
+    /// Whether the greatest radius was given.
+    pub(crate) has_radius: bool,
+    /// If it was, and is too small at most of the photons for as many as an estimate wants: one that is not, in metres.
+    pub(crate) sufficient_radius: Option<f32>,
+    /// Diagonal of the scene in metres.
+    pub(crate) scene_size: f32,
 }
 
 /// Photons whose surroundings tell how dense a map is.
@@ -42,6 +57,8 @@ const N_PROBES: usize = 1000;
 /// Of their radii, the one that most do not exceed, and what it is multiplied by to be the greatest radius of all.
 const PROBE_QUANTILE: f64 = 0.95;
 const RADIUS_MARGIN: f32 = 1.25;
+/// Share of the photons around which a radius that was given may hold too few.
+const MANY_SHORT: f32 = 0.5;
 /// Where a map has no more photons than an estimate wants: this share of the diagonal of the scene.
 const RADIUS_OF_FEW: f32 = 0.25;
 
@@ -51,7 +68,14 @@ impl LitMap {
     pub(crate) fn new(scene: &Scene, plan: &MapPlan, map: PhotonMap) -> Self {
         let k = plan.k.max(1);
         let max_radius = plan.max_radius.unwrap_or_else(|| fitting_radius(scene, &map, k));
-        Self { map, estimate: MapEstimate { density: plan.estimate, k, max_radius } }
+        let sufficient = plan.max_radius.and_then(|_| map.radius_from_density(k, MANY_SHORT));
+        let asked = Asked {
+            n_photons: if plan.file.is_some() { 0 } else { plan.n_photons },
+            has_radius: plan.max_radius.is_some(),
+            sufficient_radius: sufficient.filter(|radius| *radius > max_radius),
+            scene_size: scene.bounds().diagonal().length(),
+        };
+        Self { map, estimate: MapEstimate { density: plan.estimate, k, max_radius }, asked }
     }
 
     /// Radiance that some lobes of a surface make of the photons, towards where it is seen from.

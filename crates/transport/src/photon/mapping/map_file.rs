@@ -32,6 +32,7 @@ use super::settings::MappingSettings;
 use crate::integrator::Control;
 use crate::method::method_name;
 use crate::photon::direct_view::DirectViewSettings;
+use crate::photon::lack::Lack;
 use crate::photon::map::bytes::{Reader, hash};
 use crate::photon::map::{PhotonMap, PhotonMapError};
 use crate::photon::walk::trace_photons_until;
@@ -78,7 +79,7 @@ impl MapFile {
                 names.join(", ")
             ));
         };
-        let emitter = PhotonEmitter::aimed(scene, &plan.emission);
+        let emitter = plan.emitter(scene);
         let control = Control::new(&Unobserved);
         let traced = trace_map(scene, &emitter, plan, &control).unwrap_or_default();
         let (settings_hash, photons_hash) = hashes(scene, &emitter, plan);
@@ -178,16 +179,22 @@ fn arrival(bytes: &[u8; PLACE]) -> Option<Arrival> {
     Some(Arrival { p, n: Normal3::new(n.x, n.y, n.z) })
 }
 
-/// The map that a plan tells of: from its file if there is one that can be read, else by photons. The second is true if no light
-/// sends any. `None` if the render was cancelled meanwhile.
-pub(crate) fn obtain(scene: &Scene, plan: &MapPlan, control: &Control<'_>) -> Option<(Traced, bool)> {
+/// The map that a plan tells of, from its file if there is one that can be read, else by photons, and why it is empty if it is.
+/// `None` if the render was cancelled meanwhile.
+pub(crate) fn obtain(scene: &Scene, plan: &MapPlan, control: &Control<'_>) -> Option<(Traced, Option<Lack>)> {
     let file = plan.file.as_ref().and_then(|name| scene.integrator_files.get(name));
     // Front ends have reported files that do not fit (`check_map_files`).
     if let Some(file) = file.and_then(|bytes| MapFile::from_bytes(bytes).ok()) {
-        return Some((file.traced, false));
+        return Some((file.traced, None));
     }
-    let emitter = PhotonEmitter::aimed(scene, &plan.emission);
-    Some((trace_map(scene, &emitter, plan, control)?, emitter.is_dark()))
+    let emitter = plan.emitter(scene);
+    let traced = trace_map(scene, &emitter, plan, control)?;
+    let lack = match plan.n_photons {
+        _ if !traced.map.is_empty() => None,
+        0 => Some(Lack::Unasked),
+        _ => Some(Lack::of_light(scene, &emitter).unwrap_or(Lack::Unkept)),
+    };
+    Some((traced, lack))
 }
 
 /// Problems of the photon maps that the scene's method is to read: errors where it cannot be done, warnings where a map was made for
@@ -220,7 +227,7 @@ pub fn check_map_files(scene: &Scene) -> Diagnostics {
             );
             diagnostics.error(span, message).with_help(remedy());
         } else {
-            let hashes = hashes(scene, &PhotonEmitter::aimed(scene, &plan.emission), &plan);
+            let hashes = hashes(scene, &plan.emitter(scene), &plan);
             if let Some(difference) = difference(&file, hashes) {
                 let message = format!("\"{name}\" was made {difference}; it is shown as it is");
                 diagnostics.warning(span, message).with_help(remedy());

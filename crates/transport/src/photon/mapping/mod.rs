@@ -34,8 +34,8 @@ pub(super) use map_file::obtain;
 pub(super) use plan::MapPlan;
 pub(super) use probe::{MapNames, Probe, describe_map};
 pub(super) use settings::{
-    LIGHT_SAMPLER, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS, SHARP_ALPHA_SPEC, file, length,
-    n_parameters, spec, with_shared,
+    LIGHT_SAMPLER, MAX_PHOTON_DEPTH, MOST_NEIGHBOURS, MOST_PHOTONS, SHARP_ALPHA_SPEC, check_least_photons,
+    file, length, n_parameters, spec, with_shared,
 };
 
 use self::fill::{Arrival, Traced};
@@ -44,6 +44,7 @@ use crate::integrator::{Control, Integrator, PassEnd, Passes, ReportEntry};
 use crate::lpe::PathExpressions;
 use crate::path::camera_pass::{CameraPass, CameraPath, Follow, FollowedPath, Tracer};
 use crate::photon::estimate::EstimateScratch;
+use crate::photon::lack::Lack;
 
 /// The two-pass renderer.
 #[derive(Debug)]
@@ -65,7 +66,8 @@ struct Maps {
     accurate_distance: f32,
     global_probe: Probe,
     caustic_probe: Probe,
-    is_dark: bool,
+    /// Why the global map is empty, if it is.
+    lack: Option<Lack>,
 }
 
 impl PhotonMapping {
@@ -113,14 +115,13 @@ impl Integrator for PhotonMapping {
         let Some(maps) = &self.maps else { return Vec::new() };
         let stored = maps.global.map.len() + maps.caustic.map.len();
         let mut total = ReportEntry::new("photons_stored", stored as f64, "");
-        if maps.is_dark {
-            total = total.with_advice(
-                "the scene has no light that sends photons; there is nothing but what lamps show",
-            );
-        } else if maps.global.map.is_empty() {
-            total = total.with_advice(
-                "no photon met a surface that keeps them: there is direct light alone; check that lights are where the scene is",
-            );
+        let advice = match maps.lack {
+            Some(Lack::Unasked) => Some(self.settings.unasked_advice()),
+            Some(lack) => lack.advice(),
+            None => None,
+        };
+        if let Some(advice) = advice {
+            total = total.with_advice(advice);
         }
         let mut entries = vec![total];
         entries.extend(describe_map(&GLOBAL_NAMES, &maps.global, &maps.global_probe));
@@ -160,13 +161,13 @@ impl Maps {
         let global = Prepared::new(scene, settings.global_plan(scene), &[], control)?;
         // Photons of the global map tell where it is dark between caustics.
         let caustic = Prepared::new(scene, settings.caustic_plan(scene), &global.arrivals, control)?;
-        let (is_dark, global_irradiance, global) = (global.is_dark, global.irradiance, global.map);
+        let (lack, global_irradiance, global) = (global.lack, global.irradiance, global.map);
         let (caustic_irradiance, caustic) = (caustic.irradiance, caustic.map);
         let global_probe = Probe::new(scene, &global, settings.sharp_alpha);
         let caustic_probe = Probe::new(scene, &caustic, settings.sharp_alpha);
         Some(Self {
             accurate_distance: settings.accurate_distance.unwrap_or(2.0 * global_probe.mean_radius),
-            is_dark,
+            lack,
             global,
             caustic,
             global_irradiance,
@@ -184,15 +185,15 @@ struct Prepared {
     irradiance: Option<Precomputed>,
     /// Places where its photons arrived.
     arrivals: Vec<Arrival>,
-    /// No light sends photons.
-    is_dark: bool,
+    /// Why there are none.
+    lack: Option<Lack>,
 }
 
 impl Prepared {
     /// Irradiance is computed before at places of the map's own and at these others. `None` if the render was cancelled
     /// meanwhile.
     fn new(scene: &Scene, plan: MapPlan, others: &[Arrival], control: &Control<'_>) -> Option<Self> {
-        let (Traced { map, arrivals, place_step }, is_dark) = obtain(scene, &plan, control)?;
+        let (Traced { map, arrivals, place_step }, lack) = obtain(scene, &plan, control)?;
         let map = LitMap::new(scene, &plan, map);
         let is_wanted = plan.place_step > 0 && place_step > 0;
         let irradiance = is_wanted.then(|| {
@@ -200,7 +201,7 @@ impl Prepared {
             let others = if map.map.is_empty() { &[] } else { others };
             Precomputed::new(&map, &[&arrivals, others].concat(), control)
         });
-        (!control.is_cancelled()).then_some(Self { map, irradiance, arrivals, is_dark })
+        (!control.is_cancelled()).then_some(Self { map, irradiance, arrivals, lack })
     }
 }
 

@@ -5,7 +5,7 @@ use etendue_scene::Scene;
 use super::settings::{MOST_PHOTONS, MappingSettings};
 use crate::photon::estimate::DensityEstimate;
 use crate::photon::settings::WalkLimits;
-use crate::photon::{EmissionSettings, PhotonWalk, Target, Trail};
+use crate::photon::{EmissionSettings, PhotonEmitter, PhotonWalk, Target, Trail};
 
 /// Which photons are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,6 +74,17 @@ pub(crate) struct MapPlan {
     pub(crate) file: Option<String>,
 }
 
+impl MapPlan {
+    /// Who sends its photons.
+    #[must_use]
+    pub(super) fn emitter(&self, scene: &Scene) -> PhotonEmitter {
+        match self.emission.target {
+            Target::Anything => PhotonEmitter::reaching(scene, &self.emission),
+            _ => PhotonEmitter::aimed(scene, &self.emission),
+        }
+    }
+}
+
 /// Photons of different maps are independent.
 const GLOBAL_STREAM: u32 = 0;
 const CAUSTIC_STREAM: u32 = 1;
@@ -105,7 +116,7 @@ impl MappingSettings {
         MapPlan {
             n_photons: self.global_photons.map_or_else(by_default, u64::from),
             content: Content::All,
-            emission: EmissionSettings::default(),
+            emission: self.photons.towards(Target::Anything, self.sharp_alpha),
             walk: self.photons.walk(scene, GLOBAL_STREAM, self.limits()),
             k: self.global_k as usize,
             max_radius: self.global_radius,

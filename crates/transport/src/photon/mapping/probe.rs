@@ -20,6 +20,12 @@ const PROBE_PIXEL: [u32; 2] = [0x8000_0000, 0x8000_0000];
 /// The share of limited estimates from which a word is said.
 const MANY_LIMITED: f64 = 0.5;
 
+/// One of so many photons that were wanted is too few.
+const SCARCE: u64 = 10;
+/// Mean radius over the diagonal of the scene from which a word is said where that many times the photons of an estimate were wanted.
+const WIDE: f32 = 0.25;
+const MANY: u64 = 100;
+
 /// Estimates at surfaces that are seen, directly or by sharp scattering.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Probe {
@@ -103,23 +109,69 @@ pub(crate) struct MapNames {
 
 /// Figures of a map, with a word where one is off.
 pub(crate) fn describe_map(names: &MapNames, map: &LitMap, probe: &Probe) -> Vec<ReportEntry> {
+    let told = |entry: ReportEntry, advice: Option<String>| match advice {
+        Some(advice) => entry.with_advice(advice),
+        None => entry,
+    };
     let length = |name, value: f32| ReportEntry::new(name, f64::from(value), "m");
-    let mut limited = ReportEntry::new(names.limited, probe.limited, "");
-    if names.expects_everywhere && probe.limited > MANY_LIMITED && probe.n > 0 {
-        limited = limited.with_advice(format!(
-            "{:.0} % of the places that are seen have fewer photons than an estimate wants within {:.3} m: more \"{}\", or a larger \"{}\"",
-            100.0 * probe.limited,
-            map.estimate.max_radius,
-            names.photons_parameter,
-            names.radius_parameter
-        ));
-    }
+    let scarce = scarce_advice(names, map);
+    let wide = wide_advice(names, map, probe).filter(|_| scarce.is_none());
     vec![
         ReportEntry::new(names.emitted, map.map.n_emitted() as f64, ""),
-        ReportEntry::new(names.stored, map.map.len() as f64, ""),
-        length(names.mean_radius, probe.mean_radius),
+        told(ReportEntry::new(names.stored, map.map.len() as f64, ""), scarce),
+        told(length(names.mean_radius, probe.mean_radius), wide),
         length(names.worst_radius, probe.worst_radius),
         length(names.max_radius, map.estimate.max_radius),
-        limited,
+        told(ReportEntry::new(names.limited, probe.limited, ""), limited_advice(names, map, probe)),
     ]
+}
+
+/// A word where emission ended with far fewer photons than were wanted.
+fn scarce_advice(names: &MapNames, map: &LitMap) -> Option<String> {
+    let (stored, wanted) = (map.map.len() as u64, map.asked.n_photons);
+    (names.expects_everywhere && stored > 0 && stored < wanted / SCARCE).then(|| {
+        format!(
+            "of the {wanted} photons wanted {stored} were stored when {} were emitted: few come to where they are kept, and \
+             what they show is blotchy or dark; compare with \"path\"",
+            map.map.n_emitted()
+        )
+    })
+}
+
+/// A word where estimates blur all that there is, though not because few photons were asked for.
+fn wide_advice(names: &MapNames, map: &LitMap, probe: &Probe) -> Option<String> {
+    let size = map.asked.scene_size;
+    let is_wide = probe.n > 0 && probe.mean_radius > WIDE * size;
+    let are_many_wanted = map.asked.n_photons >= MANY * map.estimate.k as u64;
+    (names.expects_everywhere && is_wide && are_many_wanted).then(|| {
+        format!(
+            "estimates take photons from {:.3} m around, in a scene of {size:.3} m: few are where the camera looks, and light is \
+             blurred over all of it; more \"{}\" show more",
+            probe.mean_radius, names.photons_parameter
+        )
+    })
+}
+
+/// A word where a radius that was given holds too few photons. One that was chosen by density is smaller the more photons there
+/// are, and what it finds too few of is just dim.
+fn limited_advice(names: &MapNames, map: &LitMap, probe: &Probe) -> Option<String> {
+    let (radius, photons, own) = (map.estimate.max_radius, names.photons_parameter, names.radius_parameter);
+    if !map.asked.has_radius || probe.n == 0 {
+        return None;
+    }
+    if names.expects_everywhere {
+        return (probe.limited > MANY_LIMITED).then(|| {
+            format!(
+                "{:.0} % of the places that are seen have fewer photons than an estimate wants within {radius:.3} m: more \
+                 \"{photons}\", or a larger \"{own}\"",
+                100.0 * probe.limited
+            )
+        });
+    }
+    map.asked.sufficient_radius.map(|sufficient| {
+        format!(
+            "around most photons there are fewer than an estimate wants within \"{own}\" {radius}: more \"{photons}\", or a \
+             larger radius, such as {sufficient:.2e} m"
+        )
+    })
 }

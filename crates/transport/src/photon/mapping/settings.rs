@@ -2,7 +2,7 @@
 
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
-use crate::lpe::SHARP_ALPHA;
+use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER, read_sharp_alpha};
 use crate::path::camera_pass::WavelengthMode;
 use crate::photon::PhotonSettings;
 use crate::photon::estimate::{DensityEstimate, Filter};
@@ -99,13 +99,10 @@ pub(in crate::photon) const fn spec(
 }
 
 /// Parameters that both methods with maps have.
-pub(in crate::photon) const SHARP_ALPHA_SPEC: ParameterSpec = spec(
-    "sharpalpha",
-    "float",
-    "0.1",
-    "",
-    "width of microfacets below which glossy lobes are followed by rays and count as S",
-);
+pub(in crate::photon) const SHARP_ALPHA_SPEC: ParameterSpec = ParameterSpec {
+    doc: "width of microfacets below which glossy lobes are followed by rays and count as S",
+    ..SHARP_ALPHA_PARAMETER
+};
 pub(in crate::photon) const LIGHT_SAMPLER: ParameterSpec =
     spec("lightsampler", "string", "bvh", "", "how a light is chosen for shadow rays: bvh, power or uniform");
 pub(in crate::photon) const MAX_PHOTON_DEPTH: ParameterSpec =
@@ -212,7 +209,7 @@ impl MappingSettings {
             |p: &mut Parameters<'_, '_>, name| p.has(name).then(|| p.count_within(name, 0, 0, MOST_PHOTONS));
         let nearest =
             |p: &mut Parameters<'_, '_>, name, default| p.count_within(name, default, 1, MOST_NEIGHBOURS);
-        Self {
+        let settings = Self {
             global_photons: photons(p, "globalphotons"),
             caustic_photons: photons(p, "causticphotons"),
             memory: within(p, "photonmemory", "megabytes", 0.0..=MOST_MEGABYTES),
@@ -228,11 +225,25 @@ impl MappingSettings {
             precompute: p.count("precompute", default.precompute),
             max_depth: p.count("maxdepth", default.max_depth),
             max_photon_depth: p.count("maxphotondepth", default.max_photon_depth),
-            sharp_alpha: p.float("sharpalpha", default.sharp_alpha),
+            sharp_alpha: read_sharp_alpha(p),
             layers: p.bool("layers", default.layers),
             photons: PhotonSettings::from_parameters(p),
             estimate: DensityEstimate::from_parameters(p),
             wavelengths: p.choice("wavelengths", "hero", WavelengthMode::CHOICES),
+        };
+        let estimate = &settings.estimate;
+        check_least_photons(p, estimate, "globalnearest", settings.global_k, "indirect light is left out");
+        check_least_photons(p, estimate, "causticnearest", settings.caustic_k, "caustics are left out");
+        settings
+    }
+
+    /// What users are told where they asked for no global photons.
+    pub(super) fn unasked_advice(&self) -> &'static str {
+        match self.global_photons {
+            Some(_) => "\"globalphotons\" is 0: indirect light is left out",
+            None => {
+                "\"photonmemory\" holds no photons: indirect light is left out, and caustics unless \"causticphotons\" is given"
+            }
         }
     }
 
@@ -240,6 +251,22 @@ impl MappingSettings {
     #[must_use]
     pub const fn global_estimate(&self) -> DensityEstimate {
         DensityEstimate { filter: Filter::Constant, ..self.estimate }
+    }
+}
+
+/// Warns where estimates never have as many photons as they need to show anything.
+pub(in crate::photon) fn check_least_photons(
+    p: &mut Parameters<'_, '_>,
+    estimate: &DensityEstimate,
+    nearest: &str,
+    k: u32,
+    so: &str,
+) {
+    let least = estimate.min_photons;
+    if least > k {
+        let span = p.span_of("minphotons");
+        let message = format!("\"minphotons\" {least} is more than \"{nearest}\" {k}: {so}");
+        p.diagnostics().warning(span, message);
     }
 }
 

@@ -243,6 +243,7 @@ impl Eye<'_> {
         let radius = self.first_radius.at(point.p, state.distance, cosine, &mut state.neighbours) * shrink;
         let scale = 1.0 / (std::f32::consts::PI * radius * radius * self.photons.n_emitted as f32);
         if !scale.is_finite() {
+            self.tally.note(path.numbers_of, 0, radius);
             return;
         }
         let limit = self.settings.max_depth.saturating_sub(walk.depth + 1);

@@ -41,29 +41,34 @@ impl Family {
         walk: PhotonWalk,
         n_group: u64,
     ) -> Vec<Self> {
-        let aims_at = |target| EmissionSettings {
-            target,
-            sharp_alpha: walk.sharp_alpha,
-            ..EmissionSettings::default()
-        };
-        let family = |target, n_photons, first_events, stream| Self {
-            emitter: PhotonEmitter::aimed(scene, &aims_at(target)),
+        let emission = EmissionSettings { sharp_alpha: walk.sharp_alpha, ..EmissionSettings::default() };
+        let family = |emitter, n_photons, first_events, stream| Self {
+            emitter,
             walk: PhotonWalk { stream, ..walk },
             n_photons,
             n_group,
             first_events,
         };
+        let plain = PhotonEmitter::reaching(scene, &emission);
         let n_aimed = (n_group as f64 * f64::from(settings.caustic_share)) as u64;
         if n_aimed > 0 && n_aimed < n_group {
-            let aimed = family(Target::SharpShapes, n_aimed, FirstEvents::Sharp, 2);
+            let at_sharp = EmissionSettings { target: Target::SharpShapes, ..emission };
+            let aimed = PhotonEmitter::aimed(scene, &at_sharp);
             // Where as much of the light goes there anyway, nothing is won.
-            let sent = aimed.emitter.sent_share();
-            if sent > 0.0 && sent < f64::from(settings.caustic_share) {
-                let others = family(Target::Anything, n_group - n_aimed, FirstEvents::NotSharp, 0);
-                return vec![others, aimed];
+            let (sent, enough) = (aimed.sent_share(), f64::from(settings.caustic_share) * plain.sent_share());
+            if sent > 0.0 && sent < enough {
+                return vec![
+                    family(plain, n_group - n_aimed, FirstEvents::NotSharp, 0),
+                    family(aimed, n_aimed, FirstEvents::Sharp, 2),
+                ];
             }
         }
-        vec![family(Target::Anything, n_group, FirstEvents::Any, 0)]
+        vec![family(plain, n_group, FirstEvents::Any, 0)]
+    }
+
+    /// Photons of a group that leave lights.
+    pub(super) const fn n_emitted(&self) -> u64 {
+        if self.emitter.is_idle() { 0 } else { self.n_photons }
     }
 
     /// Indices of the photons of a group.

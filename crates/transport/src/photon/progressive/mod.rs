@@ -43,6 +43,7 @@ use self::photons::{GroupPhotons, PhotonPlan};
 use self::radius::FirstRadius;
 use self::statistics::PixelStatistics;
 use super::PhotonWalk;
+use super::lack::Lack;
 use crate::integrator::{Control, Integrator, PassEnd, Passes, ReportEntry, StateError};
 use crate::lpe::PathExpressions;
 use crate::path::camera_pass::{CameraPass, Common};
@@ -56,6 +57,8 @@ const PHOTONS_BY_PATHS: std::ops::RangeInclusive<usize> = (1 << 16)..=(1 << 21);
 
 /// Share of the visible points without photons from which on users are told.
 const MANY_EMPTY: f64 = 0.5;
+/// If none of so many photons was scattered onto a second surface, nothing is.
+const MANY_PHOTONS: u64 = 1 << 14;
 
 /// Progressive photon mapping.
 #[derive(Debug)]
@@ -77,6 +80,8 @@ struct Prepared {
     families: Vec<Family>,
     first_radius: FirstRadius,
     is_moving: bool,
+    /// What lies with the lights if no photon meets a shape.
+    lack: Option<Lack>,
 }
 
 /// A group of photons and camera paths.
@@ -112,6 +117,32 @@ impl Progressive {
         }
     }
 
+    /// What users are told of so many visible points, that share of which found no photon.
+    fn advice(&self, n_points: u64, empty: f64) -> Option<String> {
+        let prepared = self.prepared.as_ref()?;
+        if n_points == 0 {
+            let advice = "of the pixels that were looked at (one in sixteen) none saw a surface that photons are gathered on: there \
+                          is nothing in view, or it is all mirrors and clear glass, or \"maxdepth\" is too small";
+            return Some(advice.to_owned());
+        }
+        // Samples of lights find all that comes to the first surface.
+        let is_all_direct = self.n_stored == 0 && self.n_emitted >= MANY_PHOTONS && self.least_depth() > 0;
+        if empty <= MANY_EMPTY || is_all_direct || prepared.lack.is_some() {
+            return None;
+        }
+        let percent = 100.0 * empty;
+        Some(match self.settings.radius {
+            Some(radius) => format!(
+                "{percent:.0} % of the visible points found no photon within \"radius\" {radius} m, which shrinks from pass to pass: a \
+                 larger one, or none, so that it is chosen by the density of photons, shows the light there with less noise"
+            ),
+            None => format!(
+                "{percent:.0} % of the visible points found no photon: a larger \"photonsperiteration\" or more passes show the light \
+                 there with less noise"
+            ),
+        })
+    }
+
     fn prepare(&self, scene: &Scene, film: &Film) -> Prepared {
         let settings = &self.settings;
         let n_paths = film.settings().crop.n_pixels().saturating_mul(settings.n_groups as usize);
@@ -131,7 +162,8 @@ impl Progressive {
         };
         let families = Family::of(scene, settings, walk, n_group);
         let first_radius = FirstRadius::new(scene, settings, &families, n_group, self.least_depth());
-        Prepared { families, first_radius, is_moving: scene.geometry.is_moving() }
+        let lack = families.first().and_then(|plain| Lack::of_light(scene, &plain.emitter));
+        Prepared { families, first_radius, is_moving: scene.geometry.is_moving(), lack }
     }
 
     /// The samples of a group, into its tiles; `false` if the render was stopped meanwhile.
@@ -157,7 +189,7 @@ impl Progressive {
         let Some(photons) = GroupPhotons::trace(scene, group.number, &plan, control) else {
             return false;
         };
-        self.n_emitted += photons.n_emitted;
+        self.n_emitted += prepared.families.iter().map(Family::n_emitted).sum::<u64>();
         self.n_stored += photons.len() as u64;
         let is_fixed = settings.has_fixed_points;
         let part = if is_fixed { group.index } else { 0 };
@@ -242,21 +274,16 @@ impl Integrator for Progressive {
         let mean = |sum: u64| sum as f64 / n_points;
         let empty = mean(tally.n_empty.load(Ordering::Relaxed));
         let photons_per_point = mean(tally.n_photons.load(Ordering::Relaxed));
+        let mut emitted = ReportEntry::new("photons_emitted", self.n_emitted as f64, "");
+        if let Some(advice) = self.prepared.as_ref().and_then(|prepared| prepared.lack?.advice()) {
+            emitted = emitted.with_advice(advice);
+        }
         let mut without = ReportEntry::new("visible_points_without_photons", empty, "");
-        if empty > MANY_EMPTY {
-            without = without.with_advice(format!(
-                "{:.0} % of the visible points found no photon: a larger \"photonsperiteration\" or more passes show the light \
-                 there with less noise",
-                empty * 100.0
-            ));
-        } else if n_found == 0 && self.prepared.is_some() {
-            without = without.with_advice(
-                "of the pixels that were looked at (one in sixteen) none saw a surface that photons are gathered on: there is nothing \
-                 in view, or it is all mirrors and clear glass, or \"maxdepth\" is too small",
-            );
+        if let Some(advice) = self.advice(n_found, empty) {
+            without = without.with_advice(advice);
         }
         vec![
-            ReportEntry::new("photons_emitted", self.n_emitted as f64, ""),
+            emitted,
             ReportEntry::new("photons_stored", self.n_stored as f64, ""),
             ReportEntry::new("photons_per_visible_point", photons_per_point, ""),
             without,

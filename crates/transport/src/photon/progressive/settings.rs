@@ -2,7 +2,7 @@
 
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
-use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER};
+use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER, read_alpha, read_sharp_alpha};
 use crate::path::camera_pass::WavelengthMode;
 use crate::photon::{PhotonPattern, PhotonSettings};
 
@@ -100,7 +100,7 @@ impl ProgressiveSettings {
             kind: "integer",
             default: "one for each camera path",
             unit: "",
-            doc: "photons emitted in a pass",
+            doc: "photons emitted in a pass, rounded up to a multiple of wavelengthgroups; -1 for the default",
         },
         ParameterSpec {
             name: "causticshare",
@@ -189,8 +189,8 @@ impl ProgressiveSettings {
         let update = p.choice("radiusupdate", "schedule", &updates);
         let direct = [("lights", DirectLighting::Lights), ("photons", DirectLighting::Photons)];
         let direct = p.choice("direct", "lights", &direct);
-        let receiver_alpha = p.float("receiveralpha", default.receiver_alpha);
-        let sharp_alpha = p.float("sharpalpha", default.sharp_alpha);
+        let receiver_alpha = read_alpha(p, "receiveralpha", default.receiver_alpha);
+        let sharp_alpha = read_sharp_alpha(p);
         let pattern = PhotonSettings::read_pattern(p);
         let wavelengths = p.choice("wavelengths", "hero", WavelengthMode::CHOICES);
         let n_groups = p.count_within("wavelengthgroups", default.n_groups, 1, MAX_GROUPS);
