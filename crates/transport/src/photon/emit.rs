@@ -7,6 +7,7 @@
 mod aim;
 mod chart;
 mod evenness;
+mod targets;
 
 use std::collections::HashMap;
 
@@ -25,8 +26,9 @@ use rayon::prelude::*;
 use crate::lpe::SHARP_ALPHA;
 use crate::path::camera_pass::Tracer;
 use crate::path::medium::{medium_along, most_frequent};
-use aim::{Aim, Aimed, Targets};
+use aim::{Aim, Aimed};
 use evenness::Evenness;
+use targets::Targets;
 
 pub use aim::MapScheme;
 

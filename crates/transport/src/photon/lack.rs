@@ -11,7 +11,7 @@ pub(super) enum Lack {
     Unasked,
     /// No light sends any.
     Dark,
-    /// None meets a shape.
+    /// None meets a shape, or less than one of thousands.
     Astray,
     /// Those that meet shapes are not for the map: mirrors and clear glass keep none, or none comes to a second surface.
     Unkept,
@@ -33,7 +33,7 @@ impl Lack {
                 "no light sends photons into the scene: there is nothing but what lamps and surroundings show",
             ),
             Self::Astray => Some(
-                "no photon met a shape: lights shine past the scene; check where they are and where they point",
+                "next to no photon meets a shape: lights shine past the scene, or are far from it; check where they are and where they point",
             ),
             Self::Unasked | Self::Unkept => None,
         }

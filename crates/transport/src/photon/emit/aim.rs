@@ -16,11 +16,11 @@ use std::f32::consts::FRAC_1_PI;
 
 use etendue_geometry::BoundingSphere;
 use etendue_math::{Bounds2, Bounds3, Frame, PiecewiseConstant2, Point2, Point3, Ray, Rng, Vector3, warp};
-use etendue_scene::Scene;
 use etendue_scene::light::{Directions, EmittedRay, Light, LightContext};
 use etendue_spectrum::Wavelengths;
 
 use super::chart::Chart;
+use super::targets::{Targets, rounding};
 
 /// How photons find active cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,58 +58,13 @@ const N_LOOKS: usize = 4;
 /// From which share of active cells on a map does not pay.
 const USELESS_SHARE: f64 = 0.95;
 
-/// With fewer active cells a map tells little of where its targets are, and is made anew for the cone that holds them. That is at
-/// least so wide: directions of `f32` are some 1e-7 apart.
+/// With fewer active cells a map tells little of where its targets are, and is made anew for the cone that holds them.
 const FEW_CELLS: usize = 64;
-const LEAST_ANGLE: f32 = 2e-6;
-/// Cones wider than this, in radians, are not.
-const WIDEST_ANGLE: f32 = 0.5;
-
-/// Most balls for lights at infinity, which look at each of them for each photon.
-const MAX_DISCS: usize = 64;
 
 /// Cells along the side of each map of so many lights, if they want `n`.
 pub(super) fn affordable_side(n: usize, n_lights: usize) -> usize {
     let n_each = MAX_CELLS / (2 * n_lights.max(1));
     n.min(n_each.isqrt()).max(2)
-}
-
-/// What photons are aimed at.
-#[derive(Debug)]
-pub(super) struct Targets {
-    spheres: Vec<BoundingSphere>,
-    few_spheres: Vec<BoundingSphere>,
-}
-
-impl Targets {
-    /// Balls around the wanted shapes.
-    pub(super) fn new(scene: &Scene, wanted: &dyn Fn(etendue_geometry::GeometryId) -> bool) -> Self {
-        let cover = |n| scene.geometry.covering_spheres(n, wanted);
-        Self { spheres: cover(256), few_spheres: cover(MAX_DISCS / 2) }
-    }
-
-    /// The chart of a narrow cone that holds all directions from within a ball to them.
-    fn cone_from(&self, place: BoundingSphere) -> Option<Chart> {
-        let corner = |ball: &BoundingSphere, sign: f32| ball.centre + Vector3::splat(sign * ball.radius);
-        let first = self.spheres.first()?;
-        let bounds = Bounds3 { min: corner(first, -1.0), max: corner(first, 1.0) };
-        let bounds = self.spheres.iter().fold(bounds, |bounds, ball| Bounds3 {
-            min: bounds.min.min(corner(ball, -1.0)),
-            max: bounds.max.max(corner(ball, 1.0)),
-        });
-        let middle = bounds.min + (bounds.max - bounds.min) * 0.5;
-        let reach = |ball: &BoundingSphere| (ball.centre - middle).length() + ball.radius;
-        let radius = self.spheres.iter().map(reach).fold(0.0, f32::max);
-        let way = middle - place.centre;
-        let sine = (radius + place.radius + rounding(place.centre, middle)) / way.length();
-        let angle = (sine < WIDEST_ANGLE.sin()).then(|| sine.asin())?;
-        Some(Chart::cone(way.try_normalized()?, (1.001 * angle).max(LEAST_ANGLE)))
-    }
-
-    /// True if there are none.
-    pub(super) const fn is_empty(&self) -> bool {
-        self.spheres.is_empty()
-    }
 }
 
 /// The map of a light.
@@ -258,11 +213,6 @@ impl Cone {
             self.sin * other.cos + self.cos * other.sin < 0.0 || self.cos < -0.999 || other.cos < -0.999;
         is_wide || self.axis.dot(other.axis) >= self.cos * other.cos - self.sin * other.sin - 1e-6
     }
-}
-
-/// What rays from one point to another may miss it by.
-fn rounding(from: Point3, to: Point3) -> f32 {
-    1e-5 * (from.as_vector().abs().max_element() + to.as_vector().abs().max_element())
 }
 
 /// Directions in which a ray from within the first ball may meet the second.

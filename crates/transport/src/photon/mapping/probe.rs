@@ -170,7 +170,7 @@ fn limited_advice(names: &MapNames, map: &LitMap, probe: &Probe) -> Option<Strin
     }
     map.asked.sufficient_radius.map(|sufficient| {
         format!(
-            "around most photons there are fewer than an estimate wants within \"{own}\" {radius}: more \"{photons}\", or a \
+            "around most photons there are fewer than an estimate wants within \"{own}\" {radius:?}: more \"{photons}\", or a \
              larger radius, such as {sufficient:.2e} m"
         )
     })

@@ -122,7 +122,8 @@ impl Progressive {
         let prepared = self.prepared.as_ref()?;
         if n_points == 0 {
             let advice = "of the pixels that were looked at (one in sixteen) none saw a surface that photons are gathered on: there \
-                          is nothing in view, or it is all mirrors and clear glass, or \"maxdepth\" is too small";
+                          is nothing in view, or mirrors, clear glass and black surfaces alone, and then nothing is missing; or \
+                          \"maxdepth\" is too small";
             return Some(advice.to_owned());
         }
         // Samples of lights find all that comes to the first surface.
@@ -133,7 +134,7 @@ impl Progressive {
         let percent = 100.0 * empty;
         Some(match self.settings.radius {
             Some(radius) => format!(
-                "{percent:.0} % of the visible points found no photon within \"radius\" {radius} m, which shrinks from pass to pass: a \
+                "{percent:.0} % of the visible points found no photon within \"radius\" {radius:?} m, which shrinks from pass to pass: a \
                  larger one, or none, so that it is chosen by the density of photons, shows the light there with less noise"
             ),
             None => format!(
