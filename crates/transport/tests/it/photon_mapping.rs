@@ -378,6 +378,13 @@ fn advice_names_the_cause() {
         "LightSource \"spot\" \"point3 from\" [0 0 9] \"point3 to\" [0 0 99] {} {floor}",
         lit("I", 1.0)
     );
+    let elsewhere = format!(
+        "LightSource \"spot\" \"point3 from\" [20 0 0] \"point3 to\" [20 0 2] \"float coneangle\" 20 {} {floor}
+        Translate 20 0 0 {floor}",
+        lit("I", 1.0)
+    );
+    let wide =
+        entity("photons", &[("photons", 20_000), ("nearest", 50)]).with("radius", Value::Floats(vec![100.0]));
     let mirror = format!("{} Material \"conductor\" {floor}", lamp(1.0));
     let room = room();
     let float = |name: &str, parameter: &str, value: f32| {
@@ -409,6 +416,7 @@ fn advice_names_the_cause() {
         (&room, float("sppm", "radius", 1e-25), "within \"radius\""),
         (&room, few(float("photonmap", "globalradius", 1e-3)), "or a larger \"globalradius\""),
         (&room, few(float("photonmap", "causticradius", 1e-4)), "within \"causticradius\""),
+        (&elsewhere, wide, "few are where the camera looks"),
         (&room, few(entity("photonmap", &[])), ""),
         (&room, entity("photons", &[("photons", 20_000)]), ""),
     ];
