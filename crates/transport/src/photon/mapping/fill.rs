@@ -5,7 +5,7 @@ use etendue_scene::Scene;
 
 use super::lit_map::wide_lobes;
 use super::plan::MapPlan;
-use crate::integrator::Control;
+use crate::integrator::{Control, RayCounts};
 use crate::photon::map::{PhotonMap, PhotonMapBuilder, StoredPhoton};
 use crate::photon::walk::trace_photons_until;
 use crate::photon::{Absorption, Onward, PhotonEmitter, PhotonVertex};
@@ -94,6 +94,11 @@ pub(crate) fn trace_map(
     for part in parts {
         for shot in &part {
             builder.store(&shot.photon);
+        }
+        // Whoever interrupts need not wait for all of them.
+        control.tile_done(0, RayCounts::default());
+        if control.is_cancelled() {
+            return None;
         }
     }
     builder.scale_power((1.0 / emitted) as f32);
