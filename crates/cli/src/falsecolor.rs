@@ -24,12 +24,8 @@ pub(crate) fn run(arguments: &FalsecolorArguments) -> Result<()> {
     let image = read_image(&arguments.image).map_err(|error| Failure::Usage(error.to_string()))?;
     let refuse = |message: &str| Failure::Usage(format!("{}: {message}", arguments.image.display()));
     let mut values = photometric(&image).ok_or_else(|| refuse("there are no channels R, G, B or Y"))?;
-    let pixels: Vec<[f32; 3]> = values.iter().map(|value| [*value; 3]).collect();
-    report::non_finite(
-        &arguments.image.display().to_string(),
-        &pixels,
-        "they are left out of the statistics",
-    );
+    let name = arguments.image.display().to_string();
+    report::non_finite(&name, values.as_chunks::<1>().0, "they are left out of the statistics");
     if !values.iter().any(|value| value.is_finite()) {
         return Err(refuse("no pixel is finite"));
     }

@@ -125,14 +125,13 @@ fn convert(arguments: &ImageConvertArguments) -> Result<()> {
             let there = if layers.is_empty() { "no layers".to_owned() } else { layers.join(", ") };
             Failure::Usage(format!("{}: no layer {name}; there are {there}", arguments.image.display()))
         })?;
-        // Of the layers of a probe's grid only one is illuminance as the grid is.
-        if !is_light(name) || name != "direct" && falsecolor::is_lux(&image) {
-            image.metadata.remove(UNIT);
-        }
         if !is_light(name) {
-            for key in [WHITE_LUMINANCE, LUMINANCE, COLOR_SPACE, CHROMATICITIES] {
+            for key in [UNIT, WHITE_LUMINANCE, LUMINANCE, COLOR_SPACE, CHROMATICITIES] {
                 image.metadata.remove(key);
             }
+        } else if name != "direct" && falsecolor::is_lux(&image) {
+            // Of the layers of a probe's grid only one is illuminance as the grid is.
+            image.metadata.remove(UNIT);
         }
     }
     if let Some(pixels) = image.rgb_pixels() {

@@ -37,9 +37,15 @@ pub(crate) fn convert(image: &mut Image, to: ColorSpaceName) {
 
 /// Takes the colour of a picture from some primaries to those of a space.
 pub(crate) fn convert_from(image: &mut Image, from: Primaries, to: ColorSpaceName) {
-    let convert = from.converter(&Primaries::of(to));
-    let Some(pixels) = image.rgb_pixels().filter(|_| image.channel("R").is_some()) else { return };
-    let pixels: Vec<[f32; 3]> = pixels.into_iter().map(convert).collect();
+    if image.channel("R").is_some() {
+        map_pixels(image, from.converter(&Primaries::of(to)));
+    }
+}
+
+/// Changes the colour of each pixel; gray becomes colour.
+pub(crate) fn map_pixels(image: &mut Image, f: impl Fn([f32; 3]) -> [f32; 3]) {
+    let Some(pixels) = image.rgb_pixels() else { return };
+    let pixels: Vec<[f32; 3]> = pixels.into_iter().map(f).collect();
     image.set_rgb("", &pixels);
 }
 

@@ -33,7 +33,7 @@ pub(crate) fn warning(message: &str) {
 }
 
 /// Says how many pixels of a picture are not finite, if any, and what becomes of them.
-pub(crate) fn non_finite(name: &str, pixels: &[[f32; 3]], fate: &str) {
+pub(crate) fn non_finite<const N: usize>(name: &str, pixels: &[[f32; N]], fate: &str) {
     let n = pixels.iter().filter(|pixel| !pixel.iter().all(|value| value.is_finite())).count();
     if n > 0 {
         let are = if n == 1 { "is" } else { "are" };

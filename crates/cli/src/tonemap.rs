@@ -76,9 +76,9 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
     let display = match arguments.encoding {
         EncodingArgument::Srgb => None,
         EncodingArgument::P3 => Some(DisplayPng::P3(dither)),
-        EncodingArgument::Pq => {
-            Some(DisplayPng::Pq { white_luminance: arguments.white_luminance.unwrap_or(WHITE_LUMINANCE) })
-        }
+        EncodingArgument::Pq => Some(DisplayPng::Pq {
+            white_luminance: arguments.white_luminance.unwrap_or(DisplayPng::PQ_WHITE),
+        }),
     };
     outputs::write_all(&arguments.outputs, |path| match (outputs::extension(path).as_str(), display) {
         ("png", Some(display)) => write_display_png(path, &mapped, display),
@@ -87,9 +87,6 @@ pub(crate) fn run(arguments: &TonemapArguments) -> Result<()> {
         _ => write_image(path, &mapped),
     })
 }
-
-/// Luminance of white in cd/m^2 [ITU-R BT.2408].
-const WHITE_LUMINANCE: f32 = 203.0;
 
 /// What automatic exposure gives the log-average luminance.
 const MIDDLE_GREY: f32 = 0.18;
@@ -133,14 +130,9 @@ fn leave_light(image: &mut Image, to: ColorSpaceName) {
     image.metadata.retain(|key, _| !PHOTOMETRIC.contains(&key.as_str()));
 }
 
-fn map_pixels(image: &mut Image, f: impl Fn([f32; 3]) -> [f32; 3]) {
-    let pixels: Vec<[f32; 3]> = image.rgb_pixels().unwrap_or_default().into_iter().map(f).collect();
-    image.set_rgb("", &pixels);
-}
-
 fn scaled(image: &Image, factor: f32) -> Image {
     let mut scaled = image.clone();
-    map_pixels(&mut scaled, |rgb| rgb.map(|value| value * factor));
+    primaries::map_pixels(&mut scaled, |rgb| rgb.map(|value| value * factor));
     scaled
 }
 
@@ -149,7 +141,7 @@ fn balance_white(image: &mut Image, space: ColorSpaceName, white: [f32; 2]) {
     let space = ColorSpace::get(space);
     let target = space.to_xyz([1.0; 3]).chromaticity();
     let matrix = white_balance(white, target);
-    map_pixels(image, |rgb| {
+    primaries::map_pixels(image, |rgb| {
         let xyz = space.to_xyz(rgb).to_array();
         space.to_rgb(Xyz::from(matrix.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])))
     });

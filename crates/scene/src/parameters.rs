@@ -345,6 +345,20 @@ impl<'a, 'c> Parameters<'a, 'c> {
         self.float_opt(name).unwrap_or(default)
     }
 
+    /// A float between `least` and `most`, with a default; a number beyond is reported and clamped, NaN gives way to the default.
+    pub fn float_within(&mut self, name: &'static str, default: f32, [least, most]: [f32; 2]) -> f32 {
+        let value = self.float(name, default);
+        if (least..=most).contains(&value) {
+            return value;
+        }
+        let taken = if value.is_nan() { default } else { value.clamp(least, most) };
+        let message =
+            format!("\"{name}\" must be between {least} and {most}, but is {value}; {taken} is taken");
+        let span = self.span_of(name);
+        self.context.diagnostics.warning(span, message);
+        taken
+    }
+
     /// An integer with a default.
     pub fn integer(&mut self, name: &'static str, default: i32) -> i32 {
         self.integer_opt(name).unwrap_or(default)

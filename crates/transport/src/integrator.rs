@@ -88,6 +88,12 @@ impl ReportEntry {
     pub fn with_advice(self, advice: impl Into<String>) -> Self {
         Self { advice: Some(advice.into()), ..self }
     }
+
+    /// The same where there is a word to say.
+    #[must_use]
+    pub fn with_advice_if_any(self, advice: Option<impl Into<String>>) -> Self {
+        Self { advice: advice.map(Into::into).or(self.advice), ..self }
+    }
 }
 
 /// The way back from a running pass to the front end: progress out, cancellation in.

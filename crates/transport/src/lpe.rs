@@ -35,20 +35,7 @@ pub(crate) const SHARP_ALPHA_PARAMETER: ParameterSpec = ParameterSpec {
 
 /// Reads it.
 pub(crate) fn read_sharp_alpha(p: &mut Parameters<'_, '_>) -> f32 {
-    read_alpha(p, SHARP_ALPHA_PARAMETER.name, SHARP_ALPHA)
-}
-
-/// Reads a width of microfacets, 0 to 1; one beyond is reported and clamped.
-pub(crate) fn read_alpha(p: &mut Parameters<'_, '_>, name: &'static str, default: f32) -> f32 {
-    let value = p.float(name, default);
-    if (0.0..=1.0).contains(&value) {
-        return value;
-    }
-    let taken = if value.is_nan() { default } else { value.clamp(0.0, 1.0) };
-    let span = p.span_of(name);
-    let message = format!("\"{name}\" must be between 0 and 1, but is {value}; {taken} is taken");
-    p.diagnostics().warning(span, message);
-    taken
+    p.float_within(SHARP_ALPHA_PARAMETER.name, SHARP_ALPHA, [0.0, 1.0])
 }
 
 /// The most expressions that one render can have.

@@ -8,6 +8,7 @@ use etendue_image::{Encoding, Image, pq_decode, pq_encode};
 use image::ImageFormat;
 use png::chunk::ChunkType;
 
+use super::openexr::{CHROMATICITIES_KEY, WHITE_LUMINANCE_KEY};
 use super::write::{no_color, size_u32};
 use super::{ImageErrorCause, Opened, Outcome, raster};
 
@@ -26,6 +27,9 @@ pub enum DisplayPng {
 }
 
 impl DisplayPng {
+    /// Luminance in cd/m^2 that white usually has in PQ, and that the value 1 has in pictures that are read from it. [ITU-R BT.2408]
+    pub const PQ_WHITE: f32 = 203.0;
+
     /// Primaries, transfer function, matrix coefficients (RGB) and full range. [H.273, tables 2 to 4]
     const fn code_points(self) -> [u8; 4] {
         match self {
@@ -70,8 +74,6 @@ pub(super) fn encode(out: &mut impl Write, image: &Image, display: DisplayPng) -
     writer.finish().map_err(cause)
 }
 
-/// Luminance in cd/m^2 of the value 1 of pictures that are read from PQ. [ITU-R BT.2408]
-const PQ_WHITE: f32 = 203.0;
 /// Code points of transfer functions. [H.273, table 3]
 const TRANSFER_LINEAR: u8 = 8;
 const TRANSFER_PQ: u8 = 16;
@@ -86,9 +88,9 @@ pub(super) fn read(file: &mut Opened) -> Outcome<Image> {
     let mut image = texels.to_image(encoding);
     if transfer == TRANSFER_PQ {
         for channel in image.channels.iter_mut().filter(|channel| channel.name != "A") {
-            channel.values.iter_mut().for_each(|value| *value = pq_decode(*value) / PQ_WHITE);
+            channel.values.iter_mut().for_each(|value| *value = pq_decode(*value) / DisplayPng::PQ_WHITE);
         }
-        image.metadata.insert("whiteLuminance".to_owned(), PQ_WHITE.to_string());
+        image.metadata.insert(WHITE_LUMINANCE_KEY.to_owned(), DisplayPng::PQ_WHITE.to_string());
     }
     // With the white D65. [H.273, table 2]
     let chromaticities = match primaries {
@@ -96,7 +98,7 @@ pub(super) fn read(file: &mut Opened) -> Outcome<Image> {
         12 => Some("0.68 0.32 0.265 0.69 0.15 0.06 0.3127 0.329"),
         _ => None,
     };
-    image.metadata.extend(chromaticities.map(|text| ("chromaticities".to_owned(), text.to_owned())));
+    image.metadata.extend(chromaticities.map(|text| (CHROMATICITIES_KEY.to_owned(), text.to_owned())));
     Ok(image)
 }
 

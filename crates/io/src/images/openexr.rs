@@ -21,6 +21,7 @@ use exr::prelude::{ReadChannels, ReadLayers};
 use super::{ImageErrorCause, Opened, Outcome, check_size};
 use attributes::{chromaticities_from_exr, read_metadata};
 
+pub(super) use attributes::{CHROMATICITIES_KEY, WHITE_LUMINANCE_KEY};
 pub(super) use info::read_info;
 pub use info::{ExrChannel, ExrInfo, ExrPart};
 pub(super) use write::write;

@@ -101,7 +101,8 @@ fn errors_fall_with_photons_between_any_walls() {
     assert!(study.svg().contains("fractal walls") && study.summary().contains("for each m^2"));
 }
 
-/// A prism throws a spectrum by photons as by light tracing: blue and red as far apart, at the same places (SPEC VIS-6).
+/// A prism throws a spectrum by photons as by light tracing: blue and red as far apart, at the same places, and the same light in all
+/// (SPEC VIS-6).
 #[test]
 fn prisms_throw_spectra() {
     let files =
@@ -109,8 +110,8 @@ fn prisms_throw_spectra() {
     let text = String::from_utf8_lossy(&files.0[1].bytes).into_owned();
     let scene = StudyScene::of_text("prism", &text).with_resolution([64, 32]);
     let ways = [
-        ("\"photons\" \"string show\" \"caustics\" \"integer photons\" 10000 \"integer nearest\" 20", 4),
-        ("\"light\" \"integer maxdepth\" 8", 64),
+        ("\"photons\" \"string show\" \"caustics\" \"integer photons\" 100000 \"integer nearest\" 20", 32),
+        ("\"light\" \"integer maxdepth\" 8", 4096),
     ];
     let [photons, light] = ways.map(|(integrator, n_samples)| {
         let way =
@@ -131,7 +132,8 @@ fn prisms_throw_spectra() {
         })
     });
     for [found, truth] in [0, 1, 2].map(|c| [photons[c], light[c]]) {
-        // Of the 130,000 paths from the lamp some hundred arrive, each of one wavelength: too few to compare sums.
+        // Some thousands of photons and of paths arrive, each of one wavelength: sums of blue scatter by a tenth from seed to seed.
+        assert!((found[0] / truth[0] - 1.0).abs() < 0.3, "{photons:?} {light:?}");
         assert!((found[1] - truth[1]).abs() < 2.0, "{photons:?} {light:?}");
     }
     assert!((photons[0][1] - photons[2][1]).abs() > 2.0, "{photons:?}");

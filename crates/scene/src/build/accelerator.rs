@@ -64,7 +64,7 @@ pub(super) fn build_accelerator(document: &Document, context: &mut BuildContext<
         }
         "binarybvh" => read_binary_bvh(&mut p),
         "brute" => Accelerator::Brute,
-        "grid" => Accelerator::Grid { density: float_within(&mut p, "density", 4.0, [0.0, 64.0]) },
+        "grid" => Accelerator::Grid { density: p.float_within("density", 4.0, [0.0, 64.0]) },
         "hierarchicalgrid" => read_hierarchical_grid(&mut p),
         "octree" => Accelerator::Octree(read_division(&mut p, &DivisionSettings::OCTREE)),
         "bsp" => Accelerator::Bsp(read_division(&mut p, &DivisionSettings::BSP)),
@@ -93,7 +93,7 @@ fn read_binary_bvh(p: &mut Parameters<'_, '_>) -> Accelerator {
 fn read_hierarchical_grid(p: &mut Parameters<'_, '_>) -> Accelerator {
     let default = GridSettings::HIERARCHICAL;
     Accelerator::HierarchicalGrid(GridSettings {
-        density: float_within(p, "density", default.density, [0.0, 64.0]),
+        density: p.float_within("density", default.density, [0.0, 64.0]),
         max_primitives: p.count_within("maxprims", default.max_primitives, 0, MANY),
         max_levels: p.count_within("maxlevels", default.max_levels, 1, 8),
     })
@@ -113,26 +113,8 @@ fn read_kd_tree(p: &mut Parameters<'_, '_>) -> Accelerator {
     Accelerator::KdTree(KdTreeSettings {
         intersect_cost: p.count_within("intersectcost", intersect_cost as u32, 0, MANY) as f32,
         traversal_cost: p.count_within("traversalcost", traversal_cost as u32, 0, MANY) as f32,
-        empty_bonus: float_within(p, "emptybonus", empty_bonus, [0.0, 1.0]),
+        empty_bonus: p.float_within("emptybonus", empty_bonus, [0.0, 1.0]),
         max_primitives: p.count_within("maxprims", max_primitives, 0, MANY),
         max_depth: (!is_automatic).then(|| p.count_within("maxdepth", 0, 0, DivisionSettings::MAX_DEPTH)),
     })
-}
-
-/// A number within limits, with a default; one beyond is reported and clamped.
-fn float_within(
-    p: &mut Parameters<'_, '_>,
-    name: &'static str,
-    default: f32,
-    [least, most]: [f32; 2],
-) -> f32 {
-    let value = p.float(name, default);
-    if (least..=most).contains(&value) {
-        return value;
-    }
-    let taken = if value.is_nan() { default } else { value.clamp(least, most) };
-    let span = p.span_of(name);
-    let message = format!("\"{name}\" must be between {least} and {most}, but is {value}; {taken} is taken");
-    p.diagnostics().warning(span, message);
-    taken
 }

@@ -236,12 +236,8 @@ impl Integrator for DirectView {
         let Some((map, probe, lack)) = &self.map else { return Vec::new() };
         let mut entries = describe_map(&NAMES, map, probe);
         if map.map.is_empty() {
-            let empty = ReportEntry::new("empty_map", 1.0, "");
             let advice = lack.and_then(|lack| self.settings.advice(lack));
-            entries.push(match advice {
-                Some(advice) => empty.with_advice(advice),
-                None => empty,
-            });
+            entries.push(ReportEntry::new("empty_map", 1.0, "").with_advice_if_any(advice));
         }
         entries
     }

@@ -21,10 +21,10 @@ use exr::meta::header::{ImageAttributes, LayerAttributes, standard_names};
 
 use super::utf8;
 
-const CHROMATICITIES_KEY: &str = "chromaticities";
+pub(in super::super) const CHROMATICITIES_KEY: &str = "chromaticities";
 const WORLD_TO_CAMERA_KEY: &str = "worldToCamera";
 const WORLD_TO_NDC_KEY: &str = "worldToNDC";
-const WHITE_LUMINANCE_KEY: &str = "whiteLuminance";
+pub(in super::super) const WHITE_LUMINANCE_KEY: &str = "whiteLuminance";
 const DATA_WINDOW_KEY: &str = "dataWindow";
 const DISPLAY_WINDOW_KEY: &str = "displayWindow";
 /// Put before metadata keys that the format reserves for attributes of another type.

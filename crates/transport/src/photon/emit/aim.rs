@@ -111,17 +111,16 @@ impl Aim {
         let Some(bounds) = light.bounds(context) else { return Aimed::Everywhere };
         let Some(place) = ball_around(bounds.bounds) else { return Aimed::Everywhere };
         let chart = Chart::of(light.directions(context));
-        let map = |view| DirectionMap::new(light, context, view, place, targets, n, scheme);
-        let Some(mut map_found) = map(View::Whole(chart.unwrap_or(Chart::SPHERE))) else {
+        let map_of = |view| DirectionMap::new(light, context, view, place, targets, n, scheme);
+        let Some(mut map) = map_of(View::Whole(chart.unwrap_or(Chart::SPHERE))) else {
             return Aimed::Everywhere;
         };
         if chart.is_some()
-            && (1..FEW_CELLS).contains(&map_found.n_active)
-            && let Some(closer) = targets.cone_from(place).and_then(|chart| map(View::Part(chart)))
+            && (1..FEW_CELLS).contains(&map.n_active)
+            && let Some(closer) = targets.cone_from(place).and_then(|chart| map_of(View::Part(chart)))
         {
-            map_found = closer;
+            map = closer;
         }
-        let map = map_found;
         match map.share {
             share if share <= 0.0 => Aimed::Nowhere,
             share if share >= USELESS_SHARE => Aimed::Everywhere,

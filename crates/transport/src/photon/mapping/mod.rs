@@ -114,16 +114,13 @@ impl Integrator for PhotonMapping {
     fn report(&self) -> Vec<ReportEntry> {
         let Some(maps) = &self.maps else { return Vec::new() };
         let stored = maps.global.map.len() + maps.caustic.map.len();
-        let mut total = ReportEntry::new("photons_stored", stored as f64, "");
         let advice = match maps.lack {
             Some(Lack::Unasked) => Some(self.settings.unasked_advice()),
             Some(lack) => lack.advice(),
             None => None,
         };
-        if let Some(advice) = advice {
-            total = total.with_advice(advice);
-        }
-        let mut entries = vec![total];
+        let mut entries =
+            vec![ReportEntry::new("photons_stored", stored as f64, "").with_advice_if_any(advice)];
         entries.extend(describe_map(&GLOBAL_NAMES, &maps.global, &maps.global_probe));
         entries.extend(describe_map(&CAUSTIC_NAMES, &maps.caustic, &maps.caustic_probe));
         entries.push(ReportEntry::new("accurate_distance", f64::from(maps.accurate_distance), "m"));

@@ -109,20 +109,17 @@ pub(crate) struct MapNames {
 
 /// Figures of a map, with a word where one is off.
 pub(crate) fn describe_map(names: &MapNames, map: &LitMap, probe: &Probe) -> Vec<ReportEntry> {
-    let told = |entry: ReportEntry, advice: Option<String>| match advice {
-        Some(advice) => entry.with_advice(advice),
-        None => entry,
-    };
     let length = |name, value: f32| ReportEntry::new(name, f64::from(value), "m");
     let scarce = scarce_advice(names, map);
     let wide = wide_advice(names, map, probe).filter(|_| scarce.is_none());
     vec![
         ReportEntry::new(names.emitted, map.map.n_emitted() as f64, ""),
-        told(ReportEntry::new(names.stored, map.map.len() as f64, ""), scarce),
-        told(length(names.mean_radius, probe.mean_radius), wide),
+        ReportEntry::new(names.stored, map.map.len() as f64, "").with_advice_if_any(scarce),
+        length(names.mean_radius, probe.mean_radius).with_advice_if_any(wide),
         length(names.worst_radius, probe.worst_radius),
         length(names.max_radius, map.estimate.max_radius),
-        told(ReportEntry::new(names.limited, probe.limited, ""), limited_advice(names, map, probe)),
+        ReportEntry::new(names.limited, probe.limited, "")
+            .with_advice_if_any(limited_advice(names, map, probe)),
     ]
 }
 

@@ -275,19 +275,13 @@ impl Integrator for Progressive {
         let mean = |sum: u64| sum as f64 / n_points;
         let empty = mean(tally.n_empty.load(Ordering::Relaxed));
         let photons_per_point = mean(tally.n_photons.load(Ordering::Relaxed));
-        let mut emitted = ReportEntry::new("photons_emitted", self.n_emitted as f64, "");
-        if let Some(advice) = self.prepared.as_ref().and_then(|prepared| prepared.lack?.advice()) {
-            emitted = emitted.with_advice(advice);
-        }
-        let mut without = ReportEntry::new("visible_points_without_photons", empty, "");
-        if let Some(advice) = self.advice(n_found, empty) {
-            without = without.with_advice(advice);
-        }
+        let lack = self.prepared.as_ref().and_then(|prepared| prepared.lack?.advice());
         vec![
-            emitted,
+            ReportEntry::new("photons_emitted", self.n_emitted as f64, "").with_advice_if_any(lack),
             ReportEntry::new("photons_stored", self.n_stored as f64, ""),
             ReportEntry::new("photons_per_visible_point", photons_per_point, ""),
-            without,
+            ReportEntry::new("visible_points_without_photons", empty, "")
+                .with_advice_if_any(self.advice(n_found, empty)),
             ReportEntry::new("mean_radius", mean(tally.radius_sum.load(Ordering::Relaxed)) * 1e-6, "m"),
             ReportEntry::new(
                 "largest_radius",

@@ -2,7 +2,7 @@
 
 use etendue_scene::parameters::{ParameterSpec, Parameters};
 
-use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER, read_alpha, read_sharp_alpha};
+use crate::lpe::{SHARP_ALPHA, SHARP_ALPHA_PARAMETER, read_sharp_alpha};
 use crate::path::camera_pass::WavelengthMode;
 use crate::photon::{PhotonPattern, PhotonSettings};
 
@@ -189,7 +189,7 @@ impl ProgressiveSettings {
         let update = p.choice("radiusupdate", "schedule", &updates);
         let direct = [("lights", DirectLighting::Lights), ("photons", DirectLighting::Photons)];
         let direct = p.choice("direct", "lights", &direct);
-        let receiver_alpha = read_alpha(p, "receiveralpha", default.receiver_alpha);
+        let receiver_alpha = p.float_within("receiveralpha", default.receiver_alpha, [0.0, 1.0]);
         let sharp_alpha = read_sharp_alpha(p);
         let pattern = PhotonSettings::read_pattern(p);
         let wavelengths = p.choice("wavelengths", "hero", WavelengthMode::CHOICES);
